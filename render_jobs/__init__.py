@@ -1,0 +1,1 @@
+"""A job in, pixels out: the only package that knows Blender and pyrender."""
