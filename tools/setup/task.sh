@@ -1,0 +1,75 @@
+#!/bin/sh
+# The tasks behind the Makefile, for machines without make: sh tools/setup/task.sh TASK
+# Each task first sets up what it needs (see environment.sh), which takes no time once it is there.
+set -eu
+cd "$(dirname "$0")/../.."
+. tools/setup/environment.sh
+
+help() {
+  cat <<'TEXT'
+make demo     set everything up, render the embedded motions, name a picture to open
+make test     set everything up, run the tests
+make lint     ruff, mypy --strict, import rules
+make bench    run the benchmarks and print their ratios
+make docs     check the documentation: links, snippets, option texts
+make assets   build the embedded data again from its sources
+make setup    only set up; afterwards .venv/bin/whacamole is the command
+make help     this text
+
+Without make: sh tools/setup/task.sh demo, and so on.
+Settings: PYTHON=/path/to/python3.11, WHACAMOLE_NO_APT=1 (install no system package), PYTEST_ADDOPTS="-k name".
+TEXT
+}
+
+demo() {
+  prepare ""
+  .venv/bin/whacamole render --out demo --size 320x180 --frames 24 --shots arc,tracking --limit 2
+  picture=$(find demo/sequences -name preview.jpg | sort | head -n 1)
+  printf '\nOpen this picture: %s\n' "$PWD/$picture"
+}
+
+run_tests() {
+  prepare test
+  # One file's tests stay in one process, so that what they render is rendered once; a test may start Blender,
+  # which takes about a gigabyte, so there are never more than four processes.
+  .venv/bin/python -m pytest -n logical --maxprocesses 4 --dist loadfile
+}
+
+lint() {
+  prepare lint
+  .venv/bin/ruff check .
+  .venv/bin/ruff format --check .
+  .venv/bin/mypy
+  .venv/bin/lint-imports --no-cache
+}
+
+bench() {
+  prepare test
+  for script in benchmarks/bench_*.py; do
+    printf '\n== %s\n' "$script"
+    .venv/bin/python "$script"
+  done
+}
+
+docs() {
+  prepare test
+  .venv/bin/python -m pytest tests/test_project.py tests/test_documentation.py
+}
+
+assets() {
+  prepare test
+  for script in tools/*/build*.py; do
+    printf '\n== %s\n' "$script"
+    .venv/bin/python "$script"
+  done
+}
+
+case "${1:-help}" in
+  setup) prepare "" ;;
+  test) run_tests ;;
+  demo | lint | bench | docs | assets | help) "$1" ;;
+  *)
+    help >&2
+    stop "there is no task '$1'"
+    ;;
+esac
