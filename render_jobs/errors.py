@@ -1,0 +1,33 @@
+"""What can go wrong with a render job, as exceptions.
+
+::
+
+    RenderJobError           a job cannot be built, read or rendered; the message is one line for the user
+    ├── EngineError    this machine cannot run the engine; the message names the remedy
+    └── WorkerError         the child process failed; trying again may help
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+
+class RenderJobError(Exception):
+    """A job cannot be built, read or rendered. The message is one line that names the value and the
+    remedy."""
+
+
+class EngineError(RenderJobError):
+    """This machine cannot run the engine asked for. The message names the remedy."""
+
+
+class WorkerError(RenderJobError):
+    """The rendering process crashed, hung or reported an error.
+
+    Attributes:
+        log: the log file of the job, which holds everything the process printed.
+    """
+
+    def __init__(self, message: str, log: Path) -> None:
+        super().__init__(message)
+        self.log = log

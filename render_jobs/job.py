@@ -1,0 +1,167 @@
+"""RenderJob: everything a renderer needs, as plain data, in memory and on disk.
+
+A job folder::
+
+    JOB/
+      job.json                 settings, materials, lights; the sha256 of every other file
+      camera.npz               K, T_world_camera of the frames and of their two neighbours
+      meshes/0000/*.npy        vertices, faces, uv, placements
+      textures/<hash>.<suffix> copies, named by content
+      out/                     what the renderer writes (see render_jobs.passes)
+
+The same job gives the same bytes on every machine. A folder appears complete or not at all.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal, get_args
+
+import numpy as np
+
+from render_jobs.errors import RenderJobError
+from render_jobs.passes import DEFAULT_PASSES, checked_passes
+from render_jobs.quality import QUALITIES, Quality
+from render_jobs.scene import Environment, Lamp, Mesh, Sun
+
+if TYPE_CHECKING:
+    from camera_rigs import CameraPath
+
+ImageFormat = Literal["jpg", "png"]
+Tone = Literal["standard", "agx"]
+
+MAX_LENS_SHIFT = 8.0
+"""Principal points further than this many image widths from the centre are taken for a mistake."""
+
+
+@dataclass(frozen=True, eq=False)
+class RenderJob:
+    """A scene, a camera path and what to make of them.
+
+    Attributes:
+        camera: T frames of intrinsics and poses; also gives the image size.
+        meshes: at least one; animated ones hold T + 2 frames.
+        lights: suns and lamps.
+        environment: what surrounds the scene.
+        quality: a preset of :data:`render_jobs.quality.QUALITIES` or own settings.
+        passes: names from :data:`render_jobs.passes.PASSES`.
+        image_format: of the rgb files.
+        camera_neighbours: the camera at frames −1 and T, as a path of two frames. Flow of the last frame
+            and motion blur at both ends use them. None holds the first and the last pose, so that the last
+            flow is that of the scene alone.
+        shutter: share of the frame time during which the shutter is open, for motion blur; 0 is a sharp
+            image. Labels are never blurred: they hold at the frame's time, the middle of the exposure.
+        exposure: in stops.
+        tone: ``agx`` compresses highlights as a film camera does, ``standard`` is plain sRGB.
+        seed: of the sampling noise.
+    """
+
+    camera: CameraPath
+    meshes: tuple[Mesh, ...]
+    lights: tuple[Sun | Lamp, ...] = ()
+    environment: Environment = field(default_factory=Environment)
+    quality: Quality = field(default_factory=lambda: QUALITIES["standard"])
+    passes: tuple[str, ...] = DEFAULT_PASSES
+    image_format: ImageFormat = "jpg"
+    camera_neighbours: CameraPath | None = None
+    shutter: float = 0.0
+    exposure: float = 0.0
+    tone: Tone = "agx"
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "meshes", tuple(self.meshes))
+        object.__setattr__(self, "lights", tuple(self.lights))
+        object.__setattr__(self, "passes", checked_passes(self.passes))
+        self._check_settings()
+        _check_meshes(self.meshes, self.num_frames)
+        _check_camera(self.camera)
+        if self.camera_neighbours is not None:
+            if self.camera_neighbours.num_frames != 2:
+                raise RenderJobError(
+                    f"camera_neighbours has {self.camera_neighbours.num_frames} frames, expected 2: −1 and T"
+                )
+            _check_camera(self.camera_neighbours)
+
+    @property
+    def num_frames(self) -> int:
+        """The number of images, T."""
+        return self.camera.num_frames
+
+    @property
+    def max_track_id(self) -> int:
+        """The largest value in the masks."""
+        return max(mesh.track_id for mesh in self.meshes)
+
+    def save(self, folder: Path | str) -> None:
+        """Write the job folder in one step.
+
+        A folder that already holds this very job is left as it is, finished frames included; one that holds
+        another job is replaced.
+
+        Raises:
+            RenderJobError: a texture cannot be read, or ``folder`` exists and is no job folder.
+        """
+        from render_jobs.storage import save_job
+
+        save_job(self, Path(folder))
+
+    @classmethod
+    def load(cls, folder: Path | str) -> RenderJob:
+        """Read a job folder.
+
+        Raises:
+            RenderJobError: a file is missing, damaged or says something impossible; the message names it.
+        """
+        from render_jobs.storage import load_job
+
+        return load_job(Path(folder))
+
+    def _check_settings(self) -> None:
+        if self.image_format not in get_args(ImageFormat):
+            raise RenderJobError(
+                f"image_format {self.image_format!r} is not one of {', '.join(get_args(ImageFormat))}"
+            )
+        if self.tone not in get_args(Tone):
+            raise RenderJobError(f"tone {self.tone!r} is not one of {', '.join(get_args(Tone))}")
+        if not 0.0 <= self.shutter <= 1.0:
+            raise RenderJobError(f"shutter {self.shutter} is outside 0..1, a share of the frame time")
+        if not -20.0 <= self.exposure <= 20.0:
+            raise RenderJobError(f"exposure {self.exposure} is outside -20..20 stops")
+        if not 0 <= self.seed < 2**31:
+            raise RenderJobError(f"seed {self.seed} is outside 0..2³¹−1")
+
+
+def _check_meshes(meshes: Sequence[Mesh], num_frames: int) -> None:
+    if not meshes:
+        raise RenderJobError("the job has no mesh: there is nothing to see")
+    names = [mesh.name for mesh in meshes]
+    twice = {name for name in names if names.count(name) > 1}
+    if twice:
+        raise RenderJobError(f"two meshes are named {min(twice)!r}: names must be unique")
+    for mesh in meshes:
+        if mesh.animated and len(mesh.vertices) != num_frames + 2:
+            raise RenderJobError(
+                f"mesh {mesh.name!r}: {len(mesh.vertices)} frames of vertices, expected {num_frames + 2}: "
+                f"frames −1 to {num_frames} of a path of {num_frames}"
+            )
+
+
+def _check_camera(camera: CameraPath) -> None:
+    if camera.num_frames < 1:
+        raise RenderJobError("the camera path has no frame")
+    if not 16 <= camera.width <= 16384 or not 16 <= camera.height <= 16384:
+        raise RenderJobError(f"image size {camera.width}x{camera.height} is outside 16..16384 pixels")
+    K, pose = np.asarray(camera.K), np.asarray(camera.T_world_camera)
+    if not (np.isfinite(K).all() and np.isfinite(pose).all()):
+        raise RenderJobError("the camera path holds NaN or infinity")
+    if (K[:, 0, 0] <= 0).any() or (K[:, 1, 1] <= 0).any() or (np.abs(K[:, 0, 1]) > 1e-9).any():
+        raise RenderJobError("the camera matrix K needs positive focal lengths and no skew")
+    off_centre = np.abs(K[:, :2, 2] / (camera.width, camera.height) - 0.5)
+    if (off_centre > MAX_LENS_SHIFT).any():
+        raise RenderJobError(f"a principal point lies over {MAX_LENS_SHIFT:.0f} image sizes from the centre")
+    R = pose[:, :3, :3]
+    if np.abs(R @ R.transpose(0, 2, 1) - np.eye(3)).max() > 1e-5 or (np.linalg.det(R) < 0).any():
+        raise RenderJobError("T_world_camera holds matrices that are no rotation with a translation")
