@@ -1,0 +1,110 @@
+"""What to generate, as one validated, frozen value.
+
+A recipe comes from three places, each over the one before: the defaults below, a YAML or JSON file
+(``--recipe``), and the options of the command line. It holds nothing about *how* the work is run (jobs,
+threads, devices), so the same recipe gives the same labels on any machine.
+"""
+
+from pathlib import Path
+from typing import Annotated, Any, Literal, Self
+
+import yaml
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
+
+from whacamole.errors import RecipeError
+
+__all__ = ["Recipe", "load_recipe", "parse_size"]
+
+
+def parse_size(value: object) -> object:
+    """Turn ``"640x360"`` into ``(640, 360)``; leave anything else to the validator."""
+    if isinstance(value, str):
+        parts = value.lower().replace("×", "x").split("x")
+        if len(parts) == 2 and all(part.strip().isdigit() for part in parts):
+            return (int(parts[0]), int(parts[1]))
+        raise ValueError(f"{value!r} is not WIDTHxHEIGHT, such as 640x360")
+    return value
+
+
+def _split_commas(value: object) -> object:
+    """Turn ``"arc,tracking"`` into ``("arc", "tracking")``."""
+    if isinstance(value, str):
+        return tuple(part.strip() for part in value.split(",") if part.strip())
+    return value
+
+
+Names = Annotated[tuple[str, ...], BeforeValidator(_split_commas)]
+Side = Annotated[int, Field(ge=16, le=16384)]
+Size = Annotated[tuple[Side, Side], BeforeValidator(parse_size)]
+
+
+class Recipe(BaseModel):
+    """Everything that decides what is in a dataset."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    motions: Path | None = Field(None, description="folder or file of motions; none: the embedded ones")
+    shots: Names = Field(("auto",), description="camera moves to choose from; auto: the director decides")
+    shots_per_motion: int = Field(1, ge=1, le=10000, description="sequences made of each motion")
+    limit: int | None = Field(None, ge=1, description="make at most so many sequences")
+    frames: int = Field(
+        240, ge=0, description="frames a sequence at most, a seeded part of a longer motion; 0: all of it"
+    )
+    fps: float = Field(30.0, gt=0, le=240, description="frames a second of the video and its labels")
+    size: Size = Field((640, 360), description="width and height of a frame in pixels")
+    quality: Literal["draft", "standard", "high"] = Field("standard", description="render settings")
+    engine: Literal["auto", "cycles"] = Field("auto", description="renderer")
+    passes: Names = Field(("rgb", "mask", "depth"), description="what is rendered for each frame")
+    image_format: Literal["jpg", "png"] = Field("jpg", description="file format of the colour frames")
+    body_model: Path | None = Field(None, description="SMPL-X-schema .npz; none: the embedded CC0 body")
+    seed: int = Field(0, ge=0, lt=2**63, description="the one seed of all choices")
+    test_fraction: float = Field(0.2, ge=0, le=1, description="share of the motions in the test split")
+
+    @model_validator(mode="after")
+    def _labels_need_their_passes(self) -> Self:
+        missing = [name for name in ("rgb", "mask", "depth") if name not in self.passes]
+        if missing:
+            raise ValueError(
+                f"passes lack {', '.join(missing)}: the labels of visibility are read from mask and depth, "
+                "so rgb, mask and depth are always made"
+            )
+        return self
+
+    def save_as_dict(self) -> dict[str, Any]:
+        """Return plain values for JSON and YAML."""
+        return self.model_dump(mode="json")
+
+
+def load_recipe(path: Path | None, overrides: dict[str, Any]) -> Recipe:
+    """Return the recipe of ``path`` with ``overrides`` (command-line options that were given) on top.
+
+    Raises:
+        RecipeError: the file cannot be read, or a value is wrong; one line names it.
+    """
+    values: dict[str, Any] = {}
+    if path is not None:
+        try:
+            loaded = yaml.safe_load(path.read_text(encoding="utf-8"))
+        except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
+            reason = " ".join(str(error).split())
+            raise RecipeError(f"{path}: not a readable recipe ({reason})") from error
+        if not isinstance(loaded, dict | None):
+            raise RecipeError(f"{path}: a recipe is a list of `name: value` lines; see `whacamole recipe`")
+        values.update(loaded or {})
+    values.update(overrides)
+    try:
+        return Recipe.model_validate(values)
+    except ValidationError as error:
+        where = f"{path}: " if path is not None else ""
+        raise RecipeError(where + _one_line(error)) from error
+
+
+def _one_line(error: ValidationError) -> str:
+    """Return what is wrong with a recipe, each fault as ``option = value: reason``."""
+    faults = []
+    for fault in error.errors():
+        name = ".".join(str(part) for part in fault["loc"][:1]).replace("_", "-")
+        reason = fault["msg"].removeprefix("Value error, ")
+        shown = "" if fault["type"] in ("value_error", "extra_forbidden") else f" (got {fault['input']!r})"
+        faults.append(f"{name}: {reason}{shown}" if name else f"{reason}{shown}")
+    return "; ".join(faults)

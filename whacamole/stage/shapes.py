@@ -1,0 +1,74 @@
+"""The few solids that stages are built of, with UVs in metres so that textures keep their scale."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Solid", "box", "cylinder", "ground_grid"]
+
+
+@dataclass(frozen=True)
+class Solid:
+    """A static surface in world coordinates.
+
+    Attributes:
+        vertices: (V, 3) metres, z up.
+        faces: (F, 3) or (F, 4) vertex indices, counter-clockwise seen from outside.
+        uv: (F, 3|4, 2) metres along the face.
+    """
+
+    vertices: NDArray[np.float32]
+    faces: NDArray[np.int32]
+    uv: NDArray[np.float32]
+
+
+def _rotation(yaw: float) -> NDArray[np.float64]:
+    c, s = np.cos(yaw), np.sin(yaw)
+    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+
+
+def box(center: tuple[float, float, float], size: tuple[float, float, float], yaw: float = 0.0) -> Solid:
+    """Return a box; ``center`` is the middle of its *base*, ``yaw`` turns it about z [rad]."""
+    sx, sy, sz = size
+    corners = np.array([(x, y, z) for z in (0.0, sz) for y in (-sy / 2, sy / 2) for x in (-sx / 2, sx / 2)])
+    faces = np.array(
+        [[0, 1, 5, 4], [1, 3, 7, 5], [3, 2, 6, 7], [2, 0, 4, 6], [4, 5, 7, 6], [2, 3, 1, 0]], np.int32
+    )
+    extents = [(sx, sz), (sy, sz), (sx, sz), (sy, sz), (sx, sy), (sx, sy)]
+    uv = np.array([[(0, 0), (w, 0), (w, h), (0, h)] for w, h in extents])
+    vertices = corners @ _rotation(yaw).T + np.asarray(center)
+    return Solid(vertices.astype(np.float32), faces, uv.astype(np.float32))
+
+
+def cylinder(center: tuple[float, float, float], radius: float, height: float, sides: int = 24) -> Solid:
+    """Return a closed upright cylinder; ``center`` is the middle of its base."""
+    angle = np.arange(sides) * (2.0 * np.pi / sides)
+    ring = np.stack([radius * np.cos(angle), radius * np.sin(angle), np.zeros(sides)], axis=1)
+    vertices = np.concatenate([ring, ring + np.array([0.0, 0.0, height]), [[0.0, 0.0, height]]])
+    here = np.arange(sides)
+    there, middle = (here + 1) % sides, np.full(sides, 2 * sides)
+    lower = np.stack([here, there, there + sides], axis=1)
+    upper = np.stack([here, there + sides, here + sides], axis=1)
+    lid = np.stack([here + sides, there + sides, middle], axis=1)
+    left, right = here * (2.0 * np.pi * radius / sides), (here + 1) * (2.0 * np.pi * radius / sides)
+    bottom, top = np.zeros(sides), np.full(sides, height)
+    wall_uv = [[(left, bottom), (right, bottom), (right, top)], [(left, bottom), (right, top), (left, top)]]
+    uv = [np.stack([np.stack(corner, axis=1) for corner in corners], axis=1) for corners in wall_uv]
+    return Solid(
+        (vertices + np.asarray(center)).astype(np.float32),
+        np.concatenate([lower, upper, lid]).astype(np.int32),
+        np.concatenate([*uv, vertices[lid][:, :, :2]]).astype(np.float32),
+    )
+
+
+def ground_grid(half_size: float, cells: int = 1) -> Solid:
+    """Return a square floor at z = 0, ``2 · half_size`` wide, of ``cells`` × ``cells`` faces."""
+    line = np.linspace(-half_size, half_size, cells + 1)
+    x, y = np.meshgrid(line, line, indexing="xy")
+    vertices = np.stack([x.ravel(), y.ravel(), np.zeros(x.size)], axis=1)
+    first = (np.arange(cells)[:, None] * (cells + 1) + np.arange(cells)).ravel()
+    faces = np.stack([first, first + 1, first + cells + 2, first + cells + 1], axis=1)
+    return Solid(
+        vertices.astype(np.float32), faces.astype(np.int32), vertices[faces][:, :, :2].astype(np.float32)
+    )

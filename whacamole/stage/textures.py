@@ -1,0 +1,170 @@
+"""Tileable surface textures from a few numbers and a seed: grounds, walls, wood.
+
+Every texture is a square ``(N, N, 3)`` array of sRGB in [0, 1] that repeats without a seam. Each carries
+detail at many scales, because visual odometry and the eye both need something to hold on to.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["TEXTURES", "asphalt", "brick", "concrete", "facade", "grass", "paving", "plaster", "wood"]
+
+Image = NDArray[np.float64]
+
+
+def _clipped(image: Image) -> Image:
+    return np.asarray(np.clip(image, 0.0, 1.0), dtype=np.float64)
+
+
+def noise(rng: np.random.Generator, size: int, slope: float = 1.6, coarsest: float = 2.0) -> Image:
+    """Return tileable noise ``(size, size)`` with mean 0 and standard deviation 1.
+
+    Args:
+        slope: amplitude falls as frequency to the power ``-slope``; larger is smoother.
+        coarsest: waves longer than ``size / coarsest`` are left out.
+    """
+    frequency = np.hypot(
+        *np.meshgrid(np.fft.fftfreq(size) * size, np.fft.rfftfreq(size) * size, indexing="ij")
+    )
+    amplitude = np.where(frequency >= coarsest, np.maximum(frequency, 1.0) ** -slope, 0.0)
+    phase = rng.uniform(0.0, 2.0 * np.pi, frequency.shape)
+    field = np.fft.irfft2(amplitude * np.exp(1j * phase), s=(size, size))
+    return np.asarray((field - field.mean()) / field.std())
+
+
+def _tinted(rng: np.random.Generator, size: int, color: tuple[float, float, float], grain: float) -> Image:
+    """Return ``color`` broken up by soft patches and fine grain of relative strength ``grain``."""
+    patches, fine = noise(rng, size, 1.8), noise(rng, size, 0.6, 24.0)
+    tone = 1.0 + grain * (0.7 * patches + 0.6 * fine)
+    return _clipped(np.asarray(color) * tone[..., None], 0.0, 1.0)
+
+
+def _cells(size: int, rows: int, columns: int, stagger: float) -> tuple[NDArray[np.int64], Image]:
+    """Return the cell index of each pixel and its distance to the cell's edge in pixels."""
+    y, x = np.mgrid[0:size, 0:size].astype(np.float64)
+    row = np.floor(y / size * rows)
+    shifted = x / size * columns + stagger * (row % 2)
+    column = np.floor(shifted) % columns
+    inside_x = (shifted % 1.0) * size / columns
+    inside_y = (y / size * rows % 1.0) * size / rows
+    edge = np.minimum(
+        np.minimum(inside_x, size / columns - inside_x), np.minimum(inside_y, size / rows - inside_y)
+    )
+    return (row * columns + column).astype(np.int64), edge
+
+
+def _masonry(
+    rng: np.random.Generator,
+    size: int,
+    rows: int,
+    columns: int,
+    *,
+    color: tuple[float, float, float],
+    joint: tuple[float, float, float],
+    stagger: float,
+    spread: float,
+    joint_width: float,
+) -> Image:
+    """Return stones of varied tone with joints between them."""
+    index, edge = _cells(size, rows, columns, stagger)
+    tone = rng.normal(1.0, spread, rows * columns)[index]
+    hue = rng.normal(0.0, spread / 14, (rows * columns, 3))[index]
+    stones = _tinted(rng, size, color, 0.10) * tone[..., None] + hue
+    joints = _tinted(rng, size, joint, 0.12)
+    blend = np.clip((edge - joint_width) / 1.5, 0.0, 1.0)[..., None]
+    return _clipped(blend * stones + (1.0 - blend) * joints, 0.0, 1.0)
+
+
+def paving(rng: np.random.Generator, size: int = 512) -> Image:
+    """Square or staggered slabs."""
+    rows = int(rng.integers(4, 9))
+    base = np.array([0.56, 0.53, 0.49]) * rng.uniform(0.75, 1.15) + rng.normal(0.0, 0.02, 3)
+    return _masonry(
+        rng, size, rows - rows % 2, rows - rows % 2,
+        color=(base[0], base[1], base[2]), joint=(0.33, 0.32, 0.30),
+        stagger=float(rng.choice([0.0, 0.5])), spread=0.09, joint_width=1.5,
+    )  # fmt: skip
+
+
+def brick(rng: np.random.Generator, size: int = 512) -> Image:
+    """A running bond of bricks."""
+    base = np.array([0.50, 0.30, 0.23]) * rng.uniform(0.8, 1.2) + rng.normal(0.0, 0.015, 3)
+    return _masonry(
+        rng, size, 16, 8,
+        color=(base[0], base[1], base[2]), joint=(0.62, 0.60, 0.56),
+        stagger=0.5, spread=0.14, joint_width=1.2,
+    )  # fmt: skip
+
+
+def asphalt(rng: np.random.Generator, size: int = 512) -> Image:
+    """Dark, coarse-grained, with worn patches."""
+    ground = _tinted(rng, size, (0.26, 0.26, 0.27), 0.12)
+    stones = np.clip(noise(rng, size, 0.2, 60.0) - 1.1, 0.0, 1.0)[..., None]
+    return _clipped(ground + 0.25 * stones, 0.0, 1.0)
+
+
+def grass(rng: np.random.Generator, size: int = 512) -> Image:
+    """Short grass with dry patches."""
+    blades, patches = noise(rng, size, 0.5, 30.0), noise(rng, size, 2.0)
+    green, dry = np.array([0.22, 0.31, 0.12]), np.array([0.42, 0.40, 0.22])
+    mix = np.clip(0.35 + 0.25 * patches, 0.0, 1.0)[..., None]
+    return _clipped(((1.0 - mix) * green + mix * dry) * (1.0 + 0.22 * blades[..., None]), 0.0, 1.0)
+
+
+def concrete(rng: np.random.Generator, size: int = 512) -> Image:
+    """Cast panels with stains."""
+    index, edge = _cells(size, 2, 2, 0.0)
+    tone = rng.normal(1.0, 0.05, 4)[index]
+    grey = rng.uniform(0.45, 0.66)
+    panel = _tinted(rng, size, (grey, grey, grey * 0.97), 0.07) * tone[..., None]
+    return _clipped(panel * (0.62 + 0.38 * np.clip(edge / 2.5, 0.0, 1.0))[..., None], 0.0, 1.0)
+
+
+def plaster(rng: np.random.Generator, size: int = 512) -> Image:
+    """Painted, slightly uneven."""
+    hue = rng.uniform(0.0, 1.0)
+    color = rng.uniform(0.6, 0.8) * (1.0 + 0.09 * np.cos(2.0 * np.pi * (hue + np.array([0.0, 0.33, 0.67]))))
+    color *= np.array([1.05, 1.0, 0.92])  # paints are warm more often than not
+    return _tinted(rng, size, (color[0], color[1], color[2]), 0.045)
+
+
+def wood(rng: np.random.Generator, size: int = 512) -> Image:
+    """Planks along x with grain."""
+    planks = int(rng.integers(4, 8))
+    y, x = np.mgrid[0:size, 0:size] / size
+    plank = np.floor(y * planks).astype(np.int64)
+    warp = 0.04 * noise(rng, size, 2.0)
+    rings = np.sin(2.0 * np.pi * (y * planks * 6 + warp * 9 + np.sin(2 * np.pi * x) * 0.3 + plank * 0.37))
+    tone = rng.normal(1.0, 0.10, planks)[plank] * (1.0 + 0.10 * rings + 0.06 * noise(rng, size, 0.5, 24.0))
+    base = np.array([0.48, 0.34, 0.21]) * rng.uniform(0.7, 1.25)
+    gap = np.minimum(y * planks % 1.0, 1.0 - y * planks % 1.0) * size / planks
+    return _clipped(base * (tone * (0.4 + 0.6 * np.clip(gap / 2.0, 0.0, 1.0)))[..., None], 0.0, 1.0)
+
+
+def facade(rng: np.random.Generator, size: int = 512) -> Image:
+    """One storey of a house front: plaster or brick around a row of windows."""
+    wall = plaster(rng, size) if rng.random() < 0.6 else brick(rng, size)
+    image = wall.copy()
+    windows = int(rng.integers(2, 4))
+    width, bottom, top = rng.uniform(0.42, 0.6) / windows, rng.uniform(0.12, 0.2), rng.uniform(0.68, 0.8)
+    glass = np.clip(0.16 + 0.10 * noise(rng, size, 2.0), 0.03, 0.5)[..., None] * np.array([0.8, 0.95, 1.1])
+    y, x = np.mgrid[0:size, 0:size] / size
+    cell = (x * windows) % 1.0 / windows - 0.5 / windows
+    for margin, paint in ((0.016, np.full_like(image, 0.85)), (0.0, glass)):
+        inside = (np.abs(cell) < width / 2 + margin) & (y > 1.0 - top - margin) & (y < 1.0 - bottom + margin)
+        image[inside] = paint[inside]
+    return _clipped(image, 0.0, 1.0)
+
+
+TEXTURES: dict[str, Callable[..., Image]] = {
+    "asphalt": asphalt,
+    "brick": brick,
+    "concrete": concrete,
+    "facade": facade,
+    "grass": grass,
+    "paving": paving,
+    "plaster": plaster,
+    "wood": wood,
+}
