@@ -3,8 +3,9 @@
 The wheels of Blender's module (``bpy``) and of OpenGL bring most of what they need; a server or a container
 lacks the rest. What is missing is found by asking the dynamic linker, not guessed from the system's name.
 
-``python -m whacamole.system_libraries --required`` prints the Debian packages that are missing for Blender's
-module, ``--optional`` those for the OpenGL engines, space separated on one line; nothing where all is there.
+Run as a script, ``--required`` prints the Debian packages that are missing for Blender's module and
+``--optional`` what the OpenGL engines lack beside them, on one line, which is empty where all is there. The
+set-up runs it before anything is installed: this file imports the standard library alone.
 """
 
 import ctypes
@@ -35,20 +36,33 @@ PACKAGES: Mapping[str, str] = MappingProxyType(
 )
 """Shared-object name to the Debian and Ubuntu package that holds it."""
 
+BLENDER_LIBRARIES = (
+    "libGL.so.1",
+    "libSM.so.6",
+    "libX11.so.6",
+    "libXfixes.so.3",
+    "libXi.so.6",
+    "libXrender.so.1",
+    "libxkbcommon.so.0",
+)
+"""What Blender's module links to and bare systems lack: tried where the module itself cannot be asked."""
+
 OPENGL_LIBRARIES = ("libEGL.so.1", "libGL.so.1")
-"""What EEVEE, Workbench and the raster engine open at run time, beyond what Blender's module links to."""
+"""What EEVEE, Workbench and the raster engine open at run time."""
 
 
 def missing_for_blender() -> list[str]:
     """Names of the shared objects that Blender's module links to and the system does not have.
 
-    Empty where all are there, where ``bpy`` is not installed, and on systems without ``ldd``: there only an
-    import can tell.
+    The dynamic linker's own list for the installed module; before it is installed, or without ``ldd``, the
+    known ones that do not open. Empty on other systems than Linux, where the wheel brings all it needs.
     """
+    if not sys.platform.startswith("linux"):
+        return []
     spec = importlib.util.find_spec("bpy")
     ldd = shutil.which("ldd")
     if spec is None or spec.origin is None or ldd is None:
-        return []
+        return [name for name in BLENDER_LIBRARIES if not _opens(name)]
     listing = subprocess.run([ldd, spec.origin], capture_output=True, text=True, check=False).stdout
     return parse_not_found(listing)
 
@@ -90,11 +104,14 @@ def install_line(names: Iterable[str]) -> str:
 
 def main(arguments: list[str]) -> int:
     """Print what is missing; returns the exit status."""
-    searches = {"--required": missing_for_blender, "--optional": missing_for_opengl}
-    if len(arguments) != 1 or arguments[0] not in searches:
-        sys.stderr.write("usage: python -m whacamole.system_libraries --required|--optional\n")
+    if arguments == ["--required"]:
+        names = missing_for_blender()
+    elif arguments == ["--optional"]:
+        names = sorted(set(missing_for_opengl()) - set(missing_for_blender()))
+    else:
+        sys.stderr.write("usage: python system_libraries.py --required|--optional\n")
         return 2
-    sys.stdout.write(" ".join(packages_for(searches[arguments[0]]())) + "\n")
+    sys.stdout.write(" ".join(packages_for(names)) + "\n")
     return 0
 
 

@@ -108,14 +108,30 @@ need_python() {
 need_venv() {
   if is_python_311 .venv/bin/python && [ "$(cat .venv/root 2>/dev/null)" = "$PWD" ]; then return; fi
   need_python
-  "$python" -c 'import ensurepip, venv' >/dev/null 2>&1 ||
-    need_packages "$python cannot make virtual environments: its venv module is a package of its own." python3.11-venv
+  need_system_packages "$python"
   say "making a virtual environment in .venv with $python"
   "$python" -m venv --clear .venv || stop "$python could not make .venv; its message is above"
   printf '%s\n' "$PWD" >.venv/root
 }
 
-# need_python_packages EXTRAS  installs the project with these extras ('' for none), once for each state of its files.
+# need_system_packages PYTHON  all system packages this Python lacks, in one go and before the large download.
+# What Blender's module links to must be there; what only the OpenGL engines open may be missing.
+need_system_packages() {
+  required=$("$1" -P whacamole/system_libraries.py --required)
+  optional=$("$1" -P whacamole/system_libraries.py --optional)
+  "$1" -c 'import ensurepip, venv' >/dev/null 2>&1 || required="python3.11-venv $required"
+  # shellcheck disable=SC2086  # lists of names, one word each
+  if [ -n "$required" ]; then
+    need_packages "Python's venv module or libraries that Blender's module links to are missing." \
+      $required $optional
+  elif [ -n "$optional" ]; then
+    { may_install && apt_install $optional; } ||
+      say "the OpenGL engines will not run (Cycles will); to add them: $(install_line "$optional")"
+  fi
+}
+
+# need_python_packages EXTRAS  installs the project with these extras ('' for none), once for each state of the
+# files that say which.
 need_python_packages() {
   stamp=".venv/installed-${1:-core}"
   state=$(cat pyproject.toml constraints.txt | cksum)
@@ -123,31 +139,22 @@ need_python_packages() {
   say "installing Python packages (${1:-core}); the first time this downloads some hundred megabytes"
   PIP_ROOT_USER_ACTION=ignore PIP_DISABLE_PIP_VERSION_CHECK=1 \
     .venv/bin/python -m pip install --quiet --constraint constraints.txt --editable ".${1:+[$1]}" ||
-    stop "pip could not install the packages; its message is above. Is there a network, and 4 GB of free disk?"
+    stop "pip could not install the packages; its message is above"
   printf '%s\n' "$state" >"$stamp"
 }
 
-# What Blender's module links to must be there; what only the OpenGL engines need may be missing.
-need_system_libraries() {
-  [ ! -e .venv/libraries-found ] || return 0
-  required=$(.venv/bin/python -m whacamole.system_libraries --required)
-  optional=$(.venv/bin/python -m whacamole.system_libraries --optional)
-  if [ -n "$required" ]; then
-    # shellcheck disable=SC2086  # lists of names, one word each
-    need_packages "Blender's module needs system libraries that are not here." $required $optional
-  elif [ -n "$optional" ]; then
-    # shellcheck disable=SC2086
-    { may_install && apt_install $optional; } ||
-      say "the OpenGL engines will not run (Cycles will); to add them: $(install_line "$optional")"
-  fi
+# Asked once more of the installed module itself, and proved by loading it.
+need_blender() {
+  [ ! -e .venv/blender-loads ] || return 0
+  need_system_packages .venv/bin/python
   .venv/bin/python -c 'import bpy' ||
     stop "Blender's module does not load; its message is above. docs/troubleshooting.md lists the known causes"
-  : >.venv/libraries-found
+  : >.venv/blender-loads
 }
 
 # prepare EXTRAS  the whole of it; does nothing, fast, where all is there.
 prepare() {
   need_venv
   need_python_packages "$1"
-  need_system_libraries
+  need_blender
 }
