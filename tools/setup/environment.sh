@@ -138,7 +138,7 @@ need_python_packages() {
   [ "$(cat "$stamp" 2>/dev/null)" != "$state" ] || return 0
   say "installing Python packages (${1:-core}); the first time this downloads some hundred megabytes"
   PIP_ROOT_USER_ACTION=ignore PIP_DISABLE_PIP_VERSION_CHECK=1 \
-    .venv/bin/python -m pip install --quiet --constraint constraints.txt --editable ".${1:+[$1]}" ||
+    .venv/bin/python -m pip install --quiet --use-pep517 --constraint constraints.txt --editable ".${1:+[$1]}" ||
     stop "pip could not install the packages; its message is above"
   printf '%s\n' "$state" >"$stamp"
 }
@@ -147,8 +147,10 @@ need_python_packages() {
 need_blender() {
   [ ! -e .venv/blender-loads ] || return 0
   need_system_packages .venv/bin/python
-  .venv/bin/python -c 'import bpy' ||
+  message=$(.venv/bin/python -c 'import bpy' 2>&1) || {
+    printf '%s\n' "$message" >&2
     stop "Blender's module does not load; its message is above. docs/troubleshooting.md lists the known causes"
+  }
   : >.venv/blender-loads
 }
 
