@@ -1,0 +1,140 @@
+"""The rasteriser against closed forms, against rays through pixel centres, and its own invariants."""
+
+import numpy as np
+import pytest
+import trimesh
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.spatial import Delaunay, QhullError
+
+from whacamole.labels import RasterMesh, rasterize, silhouette
+
+WIDTH, HEIGHT = 64, 48
+K = np.array([[60.0, 0.0, 32.0], [0.0, 55.0, 24.0], [0.0, 0.0, 1.0]])
+
+
+def pixel_rays() -> np.ndarray:
+    """Directions with z = 1 through the pixel centres, ``(H, W, 3)``."""
+    x, y = np.meshgrid(np.arange(WIDTH) + 0.5, np.arange(HEIGHT) + 0.5)
+    return np.stack([x, y, np.ones_like(x)], axis=-1) @ np.linalg.inv(K).T
+
+
+def first_hit(vertices: np.ndarray, faces: np.ndarray, near: float) -> np.ndarray:
+    """Depth of the first triangle each ray meets beyond ``near``: Möller and Trumbore, one triangle at a time."""
+    rays = pixel_rays()
+    depth = np.full((HEIGHT, WIDTH), np.inf)
+    for a, b, c in vertices[faces]:
+        across = np.cross(rays, c - a)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            scale = 1.0 / (across @ (b - a))
+            u = across @ -a * scale
+            turned = np.cross(-a, b - a)
+            v = rays @ turned * scale
+            z = (c - a) @ turned * scale
+        hit = (u >= 0) & (v >= 0) & (u + v <= 1) & (z >= near)
+        depth = np.where(hit & (z < depth), z, depth)
+    return depth
+
+
+def sphere(radius: float, centre: tuple[float, float, float]) -> tuple[np.ndarray, np.ndarray]:
+    mesh = trimesh.creation.icosphere(subdivisions=5, radius=radius)
+    return mesh.vertices + np.array(centre), np.asarray(mesh.faces)
+
+
+def test_plane_depth_is_exact():
+    # z = 2 + 0.3 x - 0.2 y, so along a ray (x, y, 1) z the depth is 2 / (1 - 0.3 x + 0.2 y).
+    x, y = np.meshgrid(np.linspace(-40, 40, 9), np.linspace(-40, 40, 9))
+    corners = np.stack([x, y, 2 + 0.3 * x - 0.2 * y], axis=-1).reshape(-1, 3)
+    quads = np.array([[i, i + 1, i + 10, i + 9] for i in range(71) if i % 9 < 8])
+    faces = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
+    raster = rasterize([RasterMesh(corners, faces)], K, WIDTH, HEIGHT)
+    rays = pixel_rays()
+    expected = 2 / (1 - 0.3 * rays[..., 0] + 0.2 * rays[..., 1])
+    np.testing.assert_allclose(raster.depth, expected, rtol=1e-12)
+    assert (raster.mesh == 0).all()
+
+
+@pytest.mark.parametrize("cull", [False, True])
+def test_sphere_depth(cull: bool):
+    radius, centre = 0.5, (0.1, -0.05, 2.0)
+    vertices, faces = sphere(radius, centre)
+    raster = rasterize([RasterMesh(vertices, faces, cull_back=cull)], K, WIDTH, HEIGHT)
+    rays = pixel_rays()
+    along = rays @ np.array(centre)
+    square = (rays**2).sum(axis=-1)
+    disc = along**2 - square * (np.dot(centre, centre) - radius**2)
+    hit = disc > 0
+    depth = (along - np.sqrt(np.maximum(disc, 0))) / square
+    assert np.count_nonzero((raster.mesh >= 0) != hit) <= 6  # the polyhedron lies inside the sphere
+    inner = disc > 0.1 * disc.max()
+    np.testing.assert_allclose(raster.depth[inner], depth[inner], atol=1.5e-3)
+
+
+@given(seed=st.integers(0, 2**32 - 1), near=st.sampled_from([0.01, 0.5]))
+@settings(max_examples=40, deadline=None, derandomize=True)
+def test_agrees_with_rays_for_any_triangles(seed: int, near: float):
+    rng = np.random.default_rng(seed)
+    vertices = rng.normal(size=(30, 3)) * [1.0, 1.0, 1.5] + [0, 0, 1.0]  # many cross the near plane
+    faces = rng.permutation(30).reshape(10, 3)
+    raster = rasterize([RasterMesh(vertices, faces)], K, WIDTH, HEIGHT, near=near)
+    expected = first_hit(vertices, faces, near)
+    # Only pixel centres within rounding of an edge may differ, and there are none among random numbers.
+    np.testing.assert_array_equal(np.isfinite(raster.depth), np.isfinite(expected))
+    seen = np.isfinite(expected)
+    np.testing.assert_allclose(raster.depth[seen], expected[seen], rtol=1e-6)
+
+
+@given(seed=st.integers(0, 2**32 - 1))
+@settings(max_examples=30, deadline=None, derandomize=True)
+def test_shared_edges_partition_the_plane(seed: int):
+    """Every pixel under a triangulated sheet is filled once: no crack, no overlap, even at lattice points."""
+    rng = np.random.default_rng(seed)
+    # Corners on pixel centres and edges, the worst case for a fill rule.
+    grid = rng.integers(0, 2 * np.array([WIDTH, HEIGHT]), size=(20, 2)) / 2.0
+    try:
+        faces = Delaunay(grid).simplices
+    except QhullError:
+        return
+    z = 1.7
+    vertices = np.concatenate([(grid - K[:2, 2]) / [K[0, 0], K[1, 1]] * z, np.full((20, 1), z)], axis=1)
+    count = sum(
+        silhouette([RasterMesh(vertices, face[None])], K, WIDTH, HEIGHT).astype(int) for face in faces
+    )
+    assert count.max() <= 1
+    assert count.sum() == silhouette([RasterMesh(vertices, faces)], K, WIDTH, HEIGHT).sum()
+
+
+def test_silhouette_is_where_there_is_depth():
+    vertices, faces = sphere(0.5, (0.4, 0.2, 1.5))
+    meshes = [RasterMesh(vertices, faces), RasterMesh(vertices - [0.9, 0, 0], faces, cull_back=True)]
+    raster = rasterize(meshes, K, WIDTH, HEIGHT)
+    np.testing.assert_array_equal(silhouette(meshes, K, WIDTH, HEIGHT), raster.mesh >= 0)
+    assert set(np.unique(raster.mesh)) == {-1, 0, 1}
+
+
+def test_nearer_mesh_hides_the_farther_in_either_order():
+    near, faces = sphere(0.3, (0, 0, 1.5))
+    far, _ = sphere(0.6, (0.1, 0, 3.0))
+    one = rasterize([RasterMesh(near, faces), RasterMesh(far, faces)], K, WIDTH, HEIGHT)
+    two = rasterize([RasterMesh(far, faces), RasterMesh(near, faces)], K, WIDTH, HEIGHT)
+    np.testing.assert_array_equal(one.depth, two.depth)
+    np.testing.assert_array_equal(one.triangle, two.triangle)
+    np.testing.assert_array_equal(one.mesh == 0, two.mesh == 1)
+
+
+def test_triangle_index_names_the_triangle():
+    vertices, faces = sphere(0.5, (0, 0, 2.0))
+    raster = rasterize([RasterMesh(vertices, faces)], K, WIDTH, HEIGHT)
+    rows, columns = np.nonzero(raster.triangle >= 0)
+    points = pixel_rays()[rows, columns] * raster.depth[rows, columns, None]
+    corners = vertices[faces[raster.triangle[rows, columns]]]
+    bary = trimesh.triangles.points_to_barycentric(corners, points)
+    assert bary.min() > -1e-6
+
+
+def test_nothing_to_draw():
+    empty = rasterize([], K, WIDTH, HEIGHT)
+    assert np.isinf(empty.depth).all()
+    behind = RasterMesh(np.array([[0, 0, -1.0], [1, 0, -1], [0, 1, -2]]), np.array([[0, 1, 2]]))
+    assert (rasterize([behind], K, WIDTH, HEIGHT).mesh == -1).all()
+    assert not silhouette([behind], K, WIDTH, HEIGHT).any()

@@ -1,0 +1,90 @@
+"""The arrays of ``contact.npz``, built frame by frame. docs/contact.md defines every one of them."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from whacamole.body import BodyModel
+from whacamole.labels.arrays import AnyArray, Floats
+from whacamole.labels.ground import ContactThresholds, PartRows, ground_vertices
+from whacamole.labels.parts import BodyParts, skinning_parts
+from whacamole.labels.skin import OuterSkin
+
+
+class ContactLabels:
+    """Collects ``contact.npz``: give it every frame once, in any order, then take :meth:`arrays`.
+
+    Args:
+        model: the body model of all people.
+        num_people: P.
+        num_frames: T.
+        fps: frames per second.
+        limits: what counts as contact.
+        parts: the C parts; by default :func:`whacamole.labels.parts.skinning_parts`.
+    """
+
+    def __init__(
+        self,
+        model: BodyModel,
+        num_people: int,
+        num_frames: int,
+        fps: float,
+        *,
+        limits: ContactThresholds | None = None,
+        parts: BodyParts | None = None,
+    ) -> None:
+        self._fps = fps
+        self._limits = limits or ContactThresholds()
+        self._parts = parts or model_parts(model)
+        self._skin = OuterSkin.build(model.v_template, model.faces)
+        self._rows = PartRows(self._parts, self._skin.vertices)
+        self._on_skin = np.zeros(model.num_vertices, dtype=np.bool_)
+        self._on_skin[self._skin.vertices] = True
+        shape = (num_people, num_frames, len(self._parts.names))
+        self._ground_contact = np.zeros(shape, dtype=np.bool_)
+        self._ground_distance = np.full(shape, np.inf, dtype=np.float32)
+        self._bits = np.zeros((num_people, num_frames, -(-model.num_vertices // 8)), dtype=np.uint8)
+
+    def add(
+        self,
+        frame: int,
+        before: Sequence[Floats] | None,
+        now: Sequence[Floats],
+        after: Sequence[Floats] | None,
+    ) -> None:
+        """Label one frame.
+
+        Args:
+            frame: frame index.
+            before: ``(V, 3)`` of each person one frame earlier in the world [m], None at the start.
+            now: of this frame.
+            after: of the next frame, None at the end.
+        """
+        for number, body in enumerate(now):
+            touching = self._on_skin & ground_vertices(
+                before[number] if before is not None else None,
+                body,
+                after[number] if after is not None else None,
+                self._fps,
+                self._limits,
+            )
+            self._ground_contact[number, frame] = self._rows.any(touching)
+            self._ground_distance[number, frame] = self._rows.minimum(body[:, 2])
+            self._bits[number, frame] = np.packbits(touching)
+
+    def arrays(self) -> dict[str, AnyArray]:
+        """All keys of ``contact.npz``."""
+        return {
+            "part_names": np.array(self._parts.names, dtype=np.str_),
+            "ground_contact": self._ground_contact,
+            "ground_distance": self._ground_distance,
+            "vertex_contact": self._bits,
+            "ground_threshold": np.array(self._limits.ground),
+            "velocity_threshold": np.array(self._limits.velocity),
+            "person_threshold": np.array(self._limits.person),
+        }
+
+
+def model_parts(model: BodyModel) -> BodyParts:
+    """The parts of a body model at its mean shape."""
+    return skinning_parts(model.weights, model.v_template, model.rest_joints(np.zeros(10)), model.faces)
