@@ -98,7 +98,7 @@ def unpack(lean: Mapping[str, Array], label: str) -> BodyArrays:
 def _to_shares(weights: Array) -> Any:
     """Weights (V, 55) as whole shares with the same sum for every vertex: floor, then the largest rests."""
     scaled = weights / weights.sum(axis=1, keepdims=True, dtype=np.float64) * _SHARES
-    shares = np.floor(scaled + 1e-6).astype(np.int64)
+    shares = np.floor(scaled).astype(np.int64)
     missing = _SHARES - shares.sum(axis=1)
     rank = np.argsort(np.argsort(shares - scaled, axis=1, kind="stable"), axis=1, kind="stable")
     return scipy.sparse.csr_array(shares + (rank < missing[:, None]))

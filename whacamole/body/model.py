@@ -53,6 +53,7 @@ class BodyModel:
 
     parents: npt.NDArray[np.int64] = np.array(PARENTS, dtype=np.int64)
     joint_names: tuple[str, ...] = JOINT_NAMES
+    parents.setflags(write=False)
 
     def __init__(self, arrays: BodyArrays, *, name: str, sha256: str, gender: str = "neutral") -> None:
         self.arrays = arrays
@@ -248,7 +249,12 @@ def _embedded() -> BodyModel:
 
 def _read(stream: BinaryIO, label: str) -> BodyArrays:
     reader = NpzReader(stream, label)
-    return unpack(reader, label) if LEAN_KEY in reader else read_full(reader, label)
+    if LEAN_KEY not in reader:
+        return read_full(reader, label)
+    try:
+        return unpack(reader, label)
+    except (KeyError, ValueError) as error:
+        raise BodyModelError(f"{label}: not a whole lean body ({error}); pack it again") from error
 
 
 def _gender(stem: str, extras: Mapping[str, npt.NDArray[Any]]) -> str:

@@ -32,8 +32,8 @@ class BodyParams:
     """One person's SMPL-X parameters for T frames, axis-angle, flat hand = zero, float64.
 
     ``x_world = R (x_rest − j0) + j0 + transl``: SMPL-X turns about its rest pelvis ``j0``, not about the
-    origin. Arrays are copied to float64 and made read-only; a wrong shape or a value that is not finite
-    raises ``ValueError`` with the field's name.
+    origin. Arrays are copied to float64; a wrong shape or a value that is not finite raises ``ValueError``
+    with the field's name.
 
     Attributes:
         betas: (10,) shape; (T, 10) where a method predicts a shape for every frame.
@@ -73,7 +73,6 @@ class BodyParams:
                 )
             if not np.isfinite(value).all():
                 raise ValueError(f"{field.name}: holds values that are not finite")
-            value.setflags(write=False)
             object.__setattr__(self, field.name, value)
 
     @classmethod

@@ -5,7 +5,7 @@ import os
 import zipfile
 import zlib
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -27,6 +27,7 @@ _FIRST_WIDE_EXPRESSION = 300
 _EARLIEST = (1980, 1, 1, 0, 0, 0)  # the zip format's zero: the bytes must not depend on the clock
 _WHERE = "take SMPLX_NEUTRAL.npz from https://smpl-x.is.tue.mpg.de, or leave --body-model out"
 
+_READ_FAULTS = (ValueError, OSError, EOFError, RuntimeError, MemoryError, zipfile.BadZipFile, zlib.error)
 _REQUIRED = ("v_template", "f", "shapedirs", "posedirs", "J_regressor", "weights", "kintree_table")
 _OPTIONAL = ("vt", "ft", "quads", "quads_t")
 
@@ -63,6 +64,13 @@ class BodyArrays:
     uv_quads: Int32Array | None = None
     extras: Mapping[str, Array] = field(default_factory=dict)
 
+    def __post_init__(self) -> None:
+        # One model is shared by all who ask for it: a stray write must fail, not bend everybody's bodies.
+        for member in fields(self):
+            value = getattr(self, member.name)
+            if isinstance(value, np.ndarray):
+                value.setflags(write=False)
+
 
 class NpzReader(Mapping[str, Array]):
     """The arrays of an ``.npz``, each read when asked for; a fault of the file is a ``BodyModelError``.
@@ -88,7 +96,7 @@ class NpzReader(Mapping[str, Array]):
             raise KeyError(key)
         try:
             array: Array = np.load(io.BytesIO(self._zip.read(f"{key}.npy")), allow_pickle=False)
-        except (ValueError, OSError, EOFError, zipfile.BadZipFile, zlib.error) as error:
+        except _READ_FAULTS as error:
             if "pickle" in str(error):
                 raise BodyModelError(f"{self._label}: key '{key}' holds Python objects; {_WHERE}") from error
             raise BodyModelError(
@@ -213,7 +221,7 @@ def _indices(source: Mapping[str, Array], key: str, corners: int, limit: int, la
     raw = source[key]
     if raw.ndim != 2 or raw.shape[1] != corners or raw.dtype.kind not in "iu":
         raise BodyModelError(
-            f"{label}: '{key}' is {raw.shape} {raw.dtype}, expected whole numbers (N, {corners})"
+            f"{label}: '{key}' is {raw.shape} {raw.dtype}, expected whole numbers (N, {corners}); {_WHERE}"
         )
     if raw.size and (int(raw.min()) < 0 or int(raw.max()) >= limit):
         raise BodyModelError(f"{label}: '{key}' points outside 0 … {limit - 1}; fetch the file again")
