@@ -24,8 +24,6 @@ TEXT
 demo() {
   prepare ""
   .venv/bin/whacamole render --out demo --size 320x180 --frames 24 --shots arc,tracking --limit 2
-  picture=$(find demo/sequences -name preview.jpg | sort | head -n 1)
-  printf '\nOpen this picture: %s\n' "$PWD/$picture"
 }
 
 run_tests() {

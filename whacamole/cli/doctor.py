@@ -39,13 +39,14 @@ def doctor(
 def _print(checks: "list[Check]") -> None:
     """A table of what there is, and under it the remedies on lines of their own, ready to be copied."""
     from rich.console import Console
+    from rich.markup import escape
     from rich.table import Table
 
     table = Table(box=None, pad_edge=False)
     for title in ("", "state", "found"):
         table.add_column(title, overflow="fold")
     for check in checks:
-        table.add_row(check.name, f"[{_STYLE[check.state]}]{check.state}[/]", check.found)
+        table.add_row(check.name, f"[{_STYLE[check.state]}]{check.state}[/]", escape(check.found))
     Console().print(table)
     for check in checks:
         if check.remedy:
