@@ -93,6 +93,6 @@ def test_volume_of_a_box_and_of_the_body(model):
     assert mesh_volume(box.vertices + 7, box.faces) == pytest.approx(6)
     rest = model.rest_vertices(np.zeros(10))
     expected = trimesh.Trimesh(rest, model.faces, process=False).volume
-    # The seams at the eyes and the mouth are open: what the two sums make of them differs.
+    # The rows of teeth are open at the back, so what a sum makes of them depends on its origin.
     assert model.volume(np.zeros(10)) == pytest.approx(expected, rel=1e-3)
     assert 0.05 < expected < 0.08  # a person of 50 to 80 kg
