@@ -213,7 +213,7 @@ class BodyModel:
         """Write the model with all keys of the SMPL-X schema, for the ``smplx`` package and Blender add-ons.
 
         The file also holds ``source_sha256``, this model's ``sha256``, by which labels made with one are
-        known to fit the other. The same model always gives the same bytes.
+        known to fit the other. The same model gives the same bytes (with one version of zlib).
 
         Raises:
             BodyModelError: the file cannot be written.

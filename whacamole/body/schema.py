@@ -185,7 +185,7 @@ def full_arrays(body: BodyArrays) -> dict[str, Array]:
 
 
 def write_npz(path: Path, arrays: Mapping[str, Array]) -> None:
-    """Write a compressed ``.npz``: the same arrays give the same bytes, and the file is whole or absent."""
+    """Write a compressed ``.npz``: whole or not at all, the same bytes for the same arrays and zlib."""
     path.parent.mkdir(parents=True, exist_ok=True)
     part = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
