@@ -13,7 +13,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationEr
 
 from whacamole.errors import RecipeError
 
-__all__ = ["Recipe", "load_recipe", "parse_size"]
+__all__ = ["Recipe", "default_yaml", "load_recipe", "parse_size"]
 
 
 def parse_size(value: object) -> object:
@@ -35,6 +35,8 @@ def _split_commas(value: object) -> object:
 
 Names = Annotated[tuple[str, ...], BeforeValidator(_split_commas)]
 Side = Annotated[int, Field(ge=16, le=16384)]
+Millimetres = Annotated[float, Field(ge=4, le=1200)]
+FocalRange = tuple[Millimetres, Millimetres]
 Size = Annotated[tuple[Side, Side], BeforeValidator(parse_size)]
 
 
@@ -52,6 +54,9 @@ class Recipe(BaseModel):
     )
     fps: float = Field(30.0, gt=0, le=240, description="frames a second of the video and its labels")
     size: Size = Field((640, 360), description="width and height of a frame in pixels")
+    focal_mm: FocalRange = Field(
+        (24.0, 50.0), description="shortest and longest lens, as focal length on 36 mm film along the longer side"
+    )
     quality: Literal["draft", "standard", "high"] = Field("standard", description="render settings")
     engine: Literal["auto", "cycles"] = Field("auto", description="renderer")
     passes: Names = Field(("rgb", "mask", "depth"), description="what is rendered for each frame")
@@ -59,6 +64,12 @@ class Recipe(BaseModel):
     body_model: Path | None = Field(None, description="SMPL-X-schema .npz; none: the embedded CC0 body")
     seed: int = Field(0, ge=0, lt=2**63, description="the one seed of all choices")
     test_fraction: float = Field(0.2, ge=0, le=1, description="share of the motions in the test split")
+
+    @model_validator(mode="after")
+    def _focal_range_in_order(self) -> Self:
+        if self.focal_mm[0] > self.focal_mm[1]:
+            raise ValueError(f"focal_mm {self.focal_mm}: the shortest lens comes first")
+        return self
 
     @model_validator(mode="after")
     def _labels_need_their_passes(self) -> Self:
@@ -108,3 +119,13 @@ def _one_line(error: ValidationError) -> str:
         shown = "" if fault["type"] in ("value_error", "extra_forbidden") else f" (got {fault['input']!r})"
         faults.append(f"{name}: {reason}{shown}" if name else f"{reason}{shown}")
     return "; ".join(faults)
+
+
+def default_yaml() -> str:
+    """Return the default recipe as YAML, every value under a comment that explains it."""
+    defaults = Recipe.model_validate({}).save_as_dict()
+    lines = ["# What `whacamole render --recipe FILE` makes; options on the command line go over it."]
+    for name, field in Recipe.model_fields.items():
+        shown = yaml.safe_dump(defaults[name], default_flow_style=True).replace("\n...", "").strip()
+        lines += ["", f"# {field.description}", f"{name}: {shown}"]
+    return "\n".join(lines) + "\n"

@@ -5,7 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Solid", "box", "cylinder", "ground_grid"]
+__all__ = ["Solid", "Vector", "box", "cylinder", "ground_grid"]
+
+
+Vector = tuple[float, float, float]
 
 
 @dataclass(frozen=True)
@@ -28,7 +31,7 @@ def _rotation(yaw: float) -> NDArray[np.float64]:
     return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
 
 
-def box(center: tuple[float, float, float], size: tuple[float, float, float], yaw: float = 0.0) -> Solid:
+def box(center: Vector, size: Vector, yaw: float = 0.0) -> Solid:
     """Return a box; ``center`` is the middle of its *base*, ``yaw`` turns it about z [rad]."""
     sx, sy, sz = size
     corners = np.array([(x, y, z) for z in (0.0, sz) for y in (-sy / 2, sy / 2) for x in (-sx / 2, sx / 2)])
@@ -41,7 +44,7 @@ def box(center: tuple[float, float, float], size: tuple[float, float, float], ya
     return Solid(vertices.astype(np.float32), faces, uv.astype(np.float32))
 
 
-def cylinder(center: tuple[float, float, float], radius: float, height: float, sides: int = 24) -> Solid:
+def cylinder(center: Vector, radius: float, height: float, sides: int = 24) -> Solid:
     """Return a closed upright cylinder; ``center`` is the middle of its base."""
     angle = np.arange(sides) * (2.0 * np.pi / sides)
     ring = np.stack([radius * np.cos(angle), radius * np.sin(angle), np.zeros(sides)], axis=1)

@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
+from camera_rigs import Obstacle, World
 from render_jobs import Environment, Lamp, Material, Mesh, Sun
-from whacamole.stage.shapes import Solid
+from whacamole.stage.shapes import Solid, Vector, box, cylinder
 
 __all__ = ["SetBuilder", "Stage"]
 
@@ -24,8 +25,7 @@ class Stage:
         lights: suns and lamps.
         environment: what surrounds it all.
         exposure: stops added when the picture is developed.
-        obstacles: (N, 2, 3) axis-aligned boxes (low corner, high corner) in metres that neither a camera
-            nor a person may enter.
+        world: the obstacles, for the camera planner and for placing people.
     """
 
     name: str
@@ -33,7 +33,7 @@ class Stage:
     lights: tuple[Sun | Lamp, ...]
     environment: Environment
     exposure: float
-    obstacles: NDArray[np.float64]
+    world: World
 
 
 @dataclass
@@ -46,7 +46,8 @@ class SetBuilder:
 
     folder: Path
     meshes: list[Mesh] = field(default_factory=list)
-    obstacles: list[NDArray[np.float64]] = field(default_factory=list)
+    obstacles: list[Obstacle] = field(default_factory=list)
+    bounds: tuple[Vector, Vector] | None = None
 
     def material(
         self,
@@ -64,16 +65,37 @@ class SetBuilder:
         Image.fromarray(pixels, "RGB").save(path, compress_level=1)
         return Material(name=name, base_color_texture=path, roughness=roughness, uv_scale=1.0 / metres)
 
-    def add(self, name: str, solid: Solid, material: Material, *, blocks: bool = True) -> None:
-        """Put a solid on the set; with ``blocks`` its bounding box is an obstacle."""
-        self.meshes.append(Mesh(name, solid.vertices, solid.faces, material, uv=solid.uv, smooth=False))
-        if blocks:
-            low, high = solid.vertices.min(axis=0), solid.vertices.max(axis=0)
-            self.obstacles.append(np.stack([low, high]).astype(np.float64))
+    def add(
+        self,
+        name: str,
+        solid: Solid,
+        material: Material,
+        obstacle: Obstacle | None = None,
+        *,
+        smooth: bool = False,
+    ) -> None:
+        """Put a solid on the set, with the box that a camera and people keep out of."""
+        mesh = Mesh(name, solid.vertices, solid.faces, material, uv=solid.uv, smooth=smooth)
+        self.meshes.append(mesh)
+        if obstacle is not None:
+            self.obstacles.append(obstacle)
+
+    def add_box(self, name: str, base: Vector, size: Vector, material: Material, yaw: float = 0.0) -> None:
+        """Put a box on the set; ``base`` is the middle of its underside, ``yaw`` turns it about z [rad]."""
+        self.add(name, box(base, size, yaw), material, _around(name, base, size, yaw))
+
+    def add_cylinder(self, name: str, base: Vector, radius: float, height: float, material: Material) -> None:
+        """Put an upright cylinder on the set; ``base`` is the middle of its underside."""
+        size = (2.0 * radius, 2.0 * radius, height)
+        self.add(name, cylinder(base, radius, height), material, _around(name, base, size, 0.0))
 
     def stage(
         self, name: str, lights: tuple[Sun | Lamp, ...], environment: Environment, exposure: float = 0.0
     ) -> Stage:
         """Return the finished stage."""
-        boxes = np.stack(self.obstacles) if self.obstacles else np.zeros((0, 2, 3))
-        return Stage(name, tuple(self.meshes), lights, environment, exposure, boxes)
+        world = World(obstacles=tuple(self.obstacles), bounds=self.bounds)
+        return Stage(name, tuple(self.meshes), lights, environment, exposure, world)
+
+
+def _around(name: str, base: Vector, size: Vector, yaw: float) -> Obstacle:
+    return Obstacle((base[0], base[1], base[2] + size[2] / 2.0), size, yaw, name)

@@ -9,7 +9,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["TEXTURES", "asphalt", "brick", "concrete", "facade", "grass", "paving", "plaster", "wood"]
+__all__ = ["TEXTURES"]
 
 Image = NDArray[np.float64]
 
@@ -38,7 +38,7 @@ def _tinted(rng: np.random.Generator, size: int, color: tuple[float, float, floa
     """Return ``color`` broken up by soft patches and fine grain of relative strength ``grain``."""
     patches, fine = noise(rng, size, 1.8), noise(rng, size, 0.6, 24.0)
     tone = 1.0 + grain * (0.7 * patches + 0.6 * fine)
-    return _clipped(np.asarray(color) * tone[..., None], 0.0, 1.0)
+    return _clipped(np.asarray(color) * tone[..., None])
 
 
 def _cells(size: int, rows: int, columns: int, stagger: float) -> tuple[NDArray[np.int64], Image]:
@@ -74,7 +74,7 @@ def _masonry(
     stones = _tinted(rng, size, color, 0.10) * tone[..., None] + hue
     joints = _tinted(rng, size, joint, 0.12)
     blend = np.clip((edge - joint_width) / 1.5, 0.0, 1.0)[..., None]
-    return _clipped(blend * stones + (1.0 - blend) * joints, 0.0, 1.0)
+    return _clipped(blend * stones + (1.0 - blend) * joints)
 
 
 def paving(rng: np.random.Generator, size: int = 512) -> Image:
@@ -102,7 +102,7 @@ def asphalt(rng: np.random.Generator, size: int = 512) -> Image:
     """Dark, coarse-grained, with worn patches."""
     ground = _tinted(rng, size, (0.26, 0.26, 0.27), 0.12)
     stones = np.clip(noise(rng, size, 0.2, 60.0) - 1.1, 0.0, 1.0)[..., None]
-    return _clipped(ground + 0.25 * stones, 0.0, 1.0)
+    return _clipped(ground + 0.25 * stones)
 
 
 def grass(rng: np.random.Generator, size: int = 512) -> Image:
@@ -110,7 +110,7 @@ def grass(rng: np.random.Generator, size: int = 512) -> Image:
     blades, patches = noise(rng, size, 0.5, 30.0), noise(rng, size, 2.0)
     green, dry = np.array([0.22, 0.31, 0.12]), np.array([0.42, 0.40, 0.22])
     mix = np.clip(0.35 + 0.25 * patches, 0.0, 1.0)[..., None]
-    return _clipped(((1.0 - mix) * green + mix * dry) * (1.0 + 0.22 * blades[..., None]), 0.0, 1.0)
+    return _clipped(((1.0 - mix) * green + mix * dry) * (1.0 + 0.22 * blades[..., None]))
 
 
 def concrete(rng: np.random.Generator, size: int = 512) -> Image:
@@ -119,7 +119,7 @@ def concrete(rng: np.random.Generator, size: int = 512) -> Image:
     tone = rng.normal(1.0, 0.05, 4)[index]
     grey = rng.uniform(0.45, 0.66)
     panel = _tinted(rng, size, (grey, grey, grey * 0.97), 0.07) * tone[..., None]
-    return _clipped(panel * (0.62 + 0.38 * np.clip(edge / 2.5, 0.0, 1.0))[..., None], 0.0, 1.0)
+    return _clipped(panel * (0.62 + 0.38 * np.clip(edge / 2.5, 0.0, 1.0))[..., None])
 
 
 def plaster(rng: np.random.Generator, size: int = 512) -> Image:
@@ -140,7 +140,7 @@ def wood(rng: np.random.Generator, size: int = 512) -> Image:
     tone = rng.normal(1.0, 0.10, planks)[plank] * (1.0 + 0.10 * rings + 0.06 * noise(rng, size, 0.5, 24.0))
     base = np.array([0.48, 0.34, 0.21]) * rng.uniform(0.7, 1.25)
     gap = np.minimum(y * planks % 1.0, 1.0 - y * planks % 1.0) * size / planks
-    return _clipped(base * (tone * (0.4 + 0.6 * np.clip(gap / 2.0, 0.0, 1.0)))[..., None], 0.0, 1.0)
+    return _clipped(base * (tone * (0.4 + 0.6 * np.clip(gap / 2.0, 0.0, 1.0)))[..., None])
 
 
 def facade(rng: np.random.Generator, size: int = 512) -> Image:
@@ -155,16 +155,57 @@ def facade(rng: np.random.Generator, size: int = 512) -> Image:
     for margin, paint in ((0.016, np.full_like(image, 0.85)), (0.0, glass)):
         inside = (np.abs(cell) < width / 2 + margin) & (y > 1.0 - top - margin) & (y < 1.0 - bottom + margin)
         image[inside] = paint[inside]
-    return _clipped(image, 0.0, 1.0)
+    return _clipped(image)
+
+
+def leaves(rng: np.random.Generator, size: int = 512) -> Image:
+    """Foliage: clumps of light and dark green."""
+    clumps, fine = noise(rng, size, 1.0, 8.0), noise(rng, size, 0.3, 40.0)
+    green = np.array([0.20, 0.30, 0.10]) * rng.uniform(0.8, 1.3) * [rng.uniform(0.8, 1.6), 1.0, 1.0]
+    return _clipped(green * (1.0 + 0.35 * clumps + 0.25 * fine)[..., None])
+
+
+def _dye(rng: np.random.Generator) -> Image:
+    """Return an sRGB colour (3,), neither grey nor glaring."""
+    hue = rng.uniform(0.0, 2.0 * np.pi) + np.array([0.0, 2.1, 4.2])
+    return np.asarray(rng.uniform(0.3, 0.65) * (1.0 + 0.45 * np.cos(hue)))
+
+
+def cloth(rng: np.random.Generator, size: int = 512) -> Image:
+    """Woven stripes or checks."""
+    y, x = np.mgrid[0:size, 0:size] / size
+    first, second = _dye(rng), _dye(rng)
+    bands = int(rng.integers(3, 9))
+    mix = (np.floor(x * bands * 2) % 2) * 0.7
+    if rng.random() < 0.5:
+        mix = 0.5 * mix + 0.5 * (np.floor(y * bands * 2) % 2)
+    weave = 1.0 + 0.06 * np.sign(np.sin(x * size * np.pi / 2) * np.sin(y * size * np.pi / 2))
+    color = mix[..., None] * first + (1.0 - mix[..., None]) * second
+    return _clipped(color * (weave * (1.0 + 0.05 * noise(rng, size, 1.2)))[..., None])
+
+
+def wallpaper(rng: np.random.Generator, size: int = 512) -> Image:
+    """A printed pattern of dots and stripes on a pale ground."""
+    y, x = np.mgrid[0:size, 0:size] / size
+    pale, print_color = 0.55 + 0.45 * _dye(rng), _dye(rng)
+    count = 2 * int(rng.integers(2, 5))  # staggered columns meet at the border only if their number is even
+    cell_x, cell_y = x * count % 1.0 - 0.5, (y * count + 0.5 * (np.floor(x * count) % 2)) % 1.0 - 0.5
+    dots = np.hypot(cell_x, cell_y) < rng.uniform(0.12, 0.3)
+    stripes = np.abs(cell_x) < 0.03
+    image = np.where((dots | stripes)[..., None], print_color, pale)
+    return _clipped(image * (1.0 + 0.03 * noise(rng, size, 1.0))[..., None])
 
 
 TEXTURES: dict[str, Callable[..., Image]] = {
     "asphalt": asphalt,
     "brick": brick,
+    "cloth": cloth,
     "concrete": concrete,
     "facade": facade,
     "grass": grass,
+    "leaves": leaves,
     "paving": paving,
     "plaster": plaster,
+    "wallpaper": wallpaper,
     "wood": wood,
 }

@@ -1,0 +1,173 @@
+"""Do labels land on the pixels? Asked of the ``smplx`` package, which poses, and of NumPy, which projects.
+
+Nothing here calls the code that wrote the labels.
+"""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import OpenEXR
+import pytest
+from numpy.typing import NDArray
+from PIL import Image
+
+pytestmark = [pytest.mark.blender, pytest.mark.slow]
+
+SEEN = 0.05
+"""A vertex no farther than this from the depth map's surface is what the map shows [m]."""
+
+POSES = (
+    "body_pose", "left_hand_pose", "right_hand_pose", "jaw_pose", "leye_pose", "reye_pose", "expression",
+)  # fmt: skip
+
+Arrays = dict[str, NDArray[Any]]
+
+
+def _load(path: Path) -> Arrays:
+    with np.load(path, allow_pickle=False) as stored:
+        return dict(stored)
+
+
+def _exr(path: Path) -> dict[str, NDArray[np.float32]]:
+    with OpenEXR.File(str(path), separate_channels=True) as file:
+        return {name: np.array(channel.pixels) for name, channel in file.channels().items()}
+
+
+def _posed_by_smplx(
+    body: Path, people: Arrays, person: int, frame: str
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return vertices (T, V, 3) and joints (T, 55, 3) in the frame "world" or "camera"."""
+    smplx = pytest.importorskip("smplx")
+    torch = pytest.importorskip("torch")
+    T = people["body_pose"].shape[1]
+
+    def tensor(name: str) -> Any:
+        return torch.tensor(people[name][person].reshape(T, -1), dtype=torch.float64)
+
+    model = smplx.create(
+        str(body), model_type="smplx", ext="npz", use_pca=False, flat_hand_mean=True, batch_size=T,
+        num_betas=10, num_expression_coeffs=10, dtype=torch.float64,
+    )  # fmt: skip
+    betas = np.broadcast_to(people["betas"][person], (T, 10)).astype(np.float64)
+    with torch.no_grad():
+        result = model(
+            betas=torch.tensor(betas),
+            global_orient=tensor(f"global_orient_{frame}"),
+            transl=tensor(f"transl_{frame}"),
+            **{name: tensor(name) for name in POSES},
+        )  # fmt: skip
+    return result.vertices.numpy(), result.joints.numpy()[:, :55]
+
+
+def _to_camera(points: NDArray[np.float64], camera: Arrays) -> NDArray[np.float64]:
+    R, t = camera["T_camera_world"][:, :3, :3], camera["T_camera_world"][:, :3, 3]
+    return np.einsum("tij,tnj->tni", R, points) + t[:, None]
+
+
+def _project(points: NDArray[np.float64], camera: Arrays) -> NDArray[np.float64]:
+    image = np.einsum("tij,tnj->tni", camera["K"], points)
+    return image[..., :2] / image[..., 2:]
+
+
+def _sequences(dataset: Path) -> list[Path]:
+    return sorted((dataset / "sequences").iterdir())
+
+
+@pytest.fixture(scope="module")
+def posed(dataset: Path, exported_body: Path) -> list[tuple[Path, int, Arrays, Arrays, NDArray[np.float64]]]:
+    """Return (sequence, person, people, camera, vertices in the camera frame) of everybody."""
+    found = []
+    for sequence in _sequences(dataset):
+        people, camera = _load(sequence / "people.npz"), _load(sequence / "camera.npz")
+        for person in range(len(people["track_id"])):
+            vertices, _ = _posed_by_smplx(exported_body, people, person, "world")
+            found.append((sequence, person, people, camera, _to_camera(vertices, camera)))
+    assert len(found) == 3  # a walker and a pair
+    return found
+
+
+def test_visible_vertices_fall_on_the_mask_at_the_right_depth(posed: Any) -> None:
+    for sequence, person, people, camera, vertices in posed:
+        pixels = _project(vertices, camera)
+        on_mask, gaps, seen_count = [], [], 0
+        for frame, (points, at) in enumerate(zip(vertices, pixels, strict=True)):
+            depth = _exr(sequence / "depth" / f"{frame:06d}.exr")["Z"]
+            mask = np.asarray(Image.open(sequence / "mask" / f"{frame:06d}.png"))
+            column, row = np.floor(at).astype(int).T
+            inside = (column >= 0) & (row >= 0) & (column < mask.shape[1]) & (row < mask.shape[0])
+            column, row, z = column[inside], row[inside], points[inside, 2]
+            gap = np.abs(depth[row, column] - z)
+            seen = gap < SEEN
+            seen_count += int(seen.sum())
+            on_mask.append(mask[row, column][seen] == people["track_id"][person])
+            gaps.append(gap[seen])
+        assert seen_count > 500 * len(vertices), "too few vertices are seen for this test to mean anything"
+        assert np.concatenate(on_mask).mean() >= 0.99
+        assert np.median(np.concatenate(gaps)) < 0.005
+        assert np.quantile(np.concatenate(gaps), 0.95) < 0.02
+
+
+def test_joints_image_is_the_projection(dataset: Path, exported_body: Path) -> None:
+    for sequence in _sequences(dataset):
+        people, camera = _load(sequence / "people.npz"), _load(sequence / "camera.npz")
+        for person in range(len(people["track_id"])):
+            _, world = _posed_by_smplx(exported_body, people, person, "world")
+            _, local = _posed_by_smplx(exported_body, people, person, "camera")
+            for joints in (_to_camera(world, camera), local):
+                error = np.abs(_project(joints, camera) - people["joints_image"][person]).max()
+                assert error < 0.01, f"{sequence.name} person {person}: {error:.4f} px"
+            np.testing.assert_allclose(people["joints_world"][person], world, atol=1e-5)
+            np.testing.assert_allclose(people["joints_camera"][person], local, atol=1e-5)
+
+
+def test_flow_is_the_motion_of_the_projection(posed: Any) -> None:
+    for sequence, _, _, camera, vertices in posed:
+        pixels = _project(vertices, camera)
+        errors, travel = [], []
+        for frame in range(len(vertices) - 1):
+            depth = _exr(sequence / "depth" / f"{frame:06d}.exr")["Z"]
+            flow = _exr(sequence / "flow" / f"{frame:06d}.exr")
+            column, row = np.floor(pixels[frame]).astype(int).T
+            inside = (column >= 0) & (row >= 0) & (column < depth.shape[1]) & (row < depth.shape[0])
+            at = (row[inside], column[inside])
+            seen = np.abs(depth[at] - vertices[frame, inside, 2]) < 0.02
+            moved = (pixels[frame + 1] - pixels[frame])[inside][seen]
+            drawn = np.stack([flow["X"][at], flow["Y"][at]], axis=1)[seen]
+            errors.append(np.abs(drawn - moved))
+            travel.append(np.abs(moved))
+        assert (np.median(np.concatenate(errors), axis=0) < 0.5).all()
+        assert np.median(np.concatenate(travel), axis=0).max() > 0.2, "nothing moves: the test means nothing"
+
+
+def test_boxes_hold_what_they_say(dataset: Path) -> None:
+    for sequence in _sequences(dataset):
+        people = _load(sequence / "people.npz")
+        for person, track in enumerate(people["track_id"]):
+            for frame, box in enumerate(people["bbox_visible_xyxy"][person]):
+                mask = np.asarray(Image.open(sequence / "mask" / f"{frame:06d}.png")) == track
+                rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
+                expected = [columns[0], rows[0], columns[-1] + 1, rows[-1] + 1]
+                np.testing.assert_allclose(box, expected)
+                whole = people["bbox_xyxy"][person, frame]
+                assert (whole[:2] <= box[:2] + 1.0).all()
+                assert (whole[2:] >= box[2:] - 1.0).all()
+            assert (people["visible_fraction"][person] > 0.3).all()
+
+
+def test_depth_and_normals_agree(dataset: Path) -> None:
+    """A plane's depth tells its normal: on the ground both must say the same."""
+    sequence = _sequences(dataset)[0]
+    camera = _load(sequence / "camera.npz")
+    depth = _exr(sequence / "depth" / "000000.exr")["Z"]
+    normal = _exr(sequence / "normal" / "000000.exr")
+    up = camera["T_camera_world"][0, :3, 2]  # the world's z axis seen by the camera
+    height, width = depth.shape
+    rows, columns = np.mgrid[0:height, 0:width] + 0.5
+    rays = np.stack([columns, rows, np.ones_like(rows)], axis=-1) @ np.linalg.inv(camera["K"][0]).T
+    points = rays * np.where(np.isfinite(depth), depth, 0.0)[..., None]
+    z = points @ up + camera["T_world_camera"][0, 2, 3]
+    ground = np.isfinite(depth) & (np.abs(z) < 1e-3)
+    assert ground.mean() > 0.05
+    stored = np.stack([normal["X"], normal["Y"], normal["Z"]], axis=-1)[ground]
+    assert np.median(stored @ up) > 0.999

@@ -1,0 +1,107 @@
+"""Stages: closed solids, seamless textures, room for the people, the same place for the same seed."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+
+from whacamole.dataset.files import sha256_of
+from whacamole.stage import STAGES, Stage
+from whacamole.stage.shapes import Solid, box, cylinder, ground_grid
+from whacamole.stage.textures import TEXTURES
+
+WALK = np.stack([np.linspace(-4.0, 4.0, 80), np.sin(np.linspace(0.0, 3.0, 80))], axis=1)
+
+
+def _surface(solid: Solid) -> trimesh.Trimesh:
+    faces = solid.faces
+    if faces.shape[1] == 4:
+        faces = np.concatenate([faces[:, [0, 1, 2]], faces[:, [0, 2, 3]]])
+    return trimesh.Trimesh(solid.vertices, faces, process=False)
+
+
+def test_a_box_is_closed_faces_outwards_and_has_its_volume() -> None:
+    surface = _surface(box((1.0, 2.0, 0.5), (2.0, 3.0, 4.0), yaw=0.7))
+    assert surface.is_watertight
+    assert surface.volume == pytest.approx(24.0, rel=1e-5)
+    assert surface.bounds[0, 2] == pytest.approx(0.5)
+
+
+def test_a_cylinder_has_the_area_of_its_prism() -> None:
+    surface = _surface(cylinder((0.0, 0.0, 0.0), radius=0.5, height=2.0, sides=24))
+    edge = 2.0 * 0.5 * np.sin(np.pi / 24)
+    lid = 24 * 0.5 * 0.5**2 * np.sin(2.0 * np.pi / 24)
+    assert surface.area == pytest.approx(24 * edge * 2.0 + lid, rel=1e-5)
+    np.testing.assert_allclose(surface.face_normals[:48, 2], 0.0, atol=1e-6)
+    np.testing.assert_allclose(surface.face_normals[48:], [[0.0, 0.0, 1.0]] * 24, atol=1e-6)
+
+
+@pytest.mark.parametrize("solid", [box((0, 0, 0), (2.0, 3.0, 1.0)), ground_grid(5.0, 4)])
+def test_uv_are_in_metres(solid: Solid) -> None:
+    edges = np.linalg.norm(np.diff(solid.vertices[solid.faces], axis=1), axis=2)
+    np.testing.assert_allclose(np.linalg.norm(np.diff(solid.uv, axis=1), axis=2), edges, rtol=1e-5)
+
+
+@pytest.mark.parametrize("name", sorted(TEXTURES))
+def test_a_texture_repeats_without_a_seam(name: str) -> None:
+    image = TEXTURES[name](np.random.default_rng(3), 128)
+    assert image.shape == (128, 128, 3)
+    assert 0.0 <= image.min() < image.max() <= 1.0
+    step = np.abs(np.diff(image, axis=1)).mean(axis=(0, 2))
+    across = np.abs(image[:, 0] - image[:, -1]).mean()
+    assert across <= step.max() * 1.5  # the step over the border is one of those inside
+
+
+@pytest.mark.parametrize("name", sorted(TEXTURES))
+def test_a_texture_has_detail_to_track(name: str) -> None:
+    grey = TEXTURES[name](np.random.default_rng(5), 128).mean(axis=2)
+    assert grey.std() > 0.01
+
+
+def _stage(name: str, seed: int, folder: Path) -> Stage:
+    return STAGES[name](np.random.default_rng(seed), WALK, folder)
+
+
+@pytest.mark.parametrize("name", sorted(STAGES))
+def test_nothing_stands_in_the_way_of_the_people(tmp_path: Path, name: str) -> None:
+    stage = _stage(name, 1, tmp_path)
+    points = np.concatenate([WALK, np.ones((len(WALK), 1))], axis=1)
+    assert stage.world.obstacle_distance(points).min() > 2.0
+    assert stage.world.wall_distance(points).min() > 2.0
+
+
+@pytest.mark.parametrize("name", sorted(STAGES))
+def test_obstacles_are_where_the_meshes_are(tmp_path: Path, name: str) -> None:
+    stage = _stage(name, 0, tmp_path)
+    by_name = {mesh.name: mesh for mesh in stage.meshes}
+    assert len(stage.world.obstacles) >= 8
+    for obstacle in stage.world.obstacles:
+        gap = obstacle.distance(by_name[obstacle.name].vertices)
+        assert gap.min() >= -0.03  # a cylinder's polygon lies inside its box
+        assert gap.max() <= 1e-5
+
+
+@pytest.mark.parametrize("name", sorted(STAGES))
+def test_one_seed_one_place(tmp_path: Path, name: str) -> None:
+    first, second = _stage(name, 4, tmp_path / "a"), _stage(name, 4, tmp_path / "b")
+    for one, other in zip(first.meshes, second.meshes, strict=True):
+        np.testing.assert_array_equal(one.vertices, other.vertices)
+        assert one.material.base_color_texture is not None
+        assert other.material.base_color_texture is not None
+        assert sha256_of(one.material.base_color_texture) == sha256_of(other.material.base_color_texture)
+    assert (first.lights, first.environment) == (second.lights, second.environment)
+    other_place = _stage(name, 5, tmp_path / "c")
+    assert [mesh.vertices.sum() for mesh in other_place.meshes] != [
+        mesh.vertices.sum() for mesh in first.meshes
+    ]
+
+
+@pytest.mark.parametrize("name", sorted(STAGES))
+def test_a_stage_reaches_beyond_a_long_walk(tmp_path: Path, name: str) -> None:
+    paths = WALK * 4.0  # 32 m
+    stage = STAGES[name](np.random.default_rng(2), paths, tmp_path)
+    low = np.min([mesh.vertices.min(axis=0) for mesh in stage.meshes], axis=0)
+    high = np.max([mesh.vertices.max(axis=0) for mesh in stage.meshes], axis=0)
+    assert (low[:2] < paths.min(axis=0) - 4.0).all()
+    assert (high[:2] > paths.max(axis=0) + 4.0).all()

@@ -1,0 +1,90 @@
+"""``whacamole render``: motions in, a labelled dataset out."""
+
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import typer
+
+__all__ = ["render"]
+
+
+def render(
+    motions: Annotated[
+        Path | None,
+        typer.Option(
+            help="Folder (searched through) or file of motion capture.", show_default="embedded motions"
+        ),
+    ] = None,
+    out: Annotated[Path, typer.Option(help="Folder of the dataset.")] = Path("dataset"),
+    shots: Annotated[
+        str | None,
+        typer.Option(
+            help="Camera moves to choose from, such as arc,tracking.",
+            show_default="auto: the director's choice",
+        ),
+    ] = None,
+    shots_per_motion: Annotated[
+        int | None, typer.Option(help="Sequences made of each motion.", show_default="1")
+    ] = None,
+    frames: Annotated[
+        int | None,
+        typer.Option(help="Frames a sequence at most; 0: the whole motion.", show_default="240"),
+    ] = None,
+    size: Annotated[str | None, typer.Option(help="WIDTHxHEIGHT in pixels.", show_default="640x360")] = None,
+    fps: Annotated[float | None, typer.Option(help="Frames a second.", show_default="30")] = None,
+    quality: Annotated[
+        str | None, typer.Option(help="draft, standard or high.", show_default="standard")
+    ] = None,
+    engine: Annotated[str | None, typer.Option(help="auto or cycles.", show_default="auto")] = None,
+    passes: Annotated[
+        str | None,
+        typer.Option(
+            help="What to render: rgb,mask,depth and, as wanted, normal,flow.", show_default="rgb,mask,depth"
+        ),
+    ] = None,
+    image_format: Annotated[
+        str | None, typer.Option(help="jpg or png, of the colour frames.", show_default="jpg")
+    ] = None,
+    body_model: Annotated[
+        Path | None,
+        typer.Option(help="SMPL-X .npz of your own licence.", show_default="the embedded CC0 body"),
+    ] = None,
+    seed: Annotated[int | None, typer.Option(help="The one seed of all choices.", show_default="0")] = None,
+    limit: Annotated[
+        int | None, typer.Option(help="Make at most so many sequences.", show_default="no limit")
+    ] = None,
+    recipe: Annotated[
+        Path | None, typer.Option(help="YAML file of these options; what is typed here goes over it.")
+    ] = None,
+    jobs: Annotated[int, typer.Option(min=1, help="Sequences made at the same time.")] = 1,
+    device: Annotated[
+        Literal["auto", "cpu", "gpu"],
+        typer.Option(help="Where to render: auto takes a GPU where Blender finds one."),
+    ] = "auto",
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="List what would be made and stop.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print errors only.")] = False,
+    json_output: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
+) -> None:
+    """Make a dataset: people from motion capture, filmed by a moving camera, with exact labels.
+
+    Stopped at any moment and started again with the same options, it goes on where it was.
+    """
+    from whacamole.production.run import produce
+    from whacamole.recipe import load_recipe
+
+    given = {
+        "motions": motions, "shots": shots, "shots_per_motion": shots_per_motion, "frames": frames,
+        "size": size, "fps": fps, "quality": quality, "engine": engine, "passes": passes,
+        "image_format": image_format, "body_model": body_model, "seed": seed, "limit": limit,
+    }  # fmt: skip
+    overrides: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
+    result = produce(
+        load_recipe(recipe, overrides),
+        out,
+        jobs=jobs,
+        device=device,
+        dry_run=dry_run,
+        quiet=quiet or json_output,
+    )
+    result.report(quiet=quiet, as_json=json_output)
+    raise typer.Exit(0 if result.complete else 1)

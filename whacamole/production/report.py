@@ -1,0 +1,112 @@
+"""What a run ends with: how many, how fast, what failed, where to look."""
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table
+
+from whacamole.dataset import DatasetLayout, read_summary
+from whacamole.production.worklist import Worklist
+
+__all__ = ["Production"]
+
+
+@dataclass(frozen=True)
+class Production:
+    """The result of :func:`whacamole.production.produce`.
+
+    Attributes:
+        root: the dataset.
+        worklist: what the recipe asks for, and what of it is finished now.
+        failures: sequence id → one-line error.
+        seconds: wall time of the run.
+        kept: how many sequences were already finished when it began.
+        dry_run: nothing was made.
+    """
+
+    root: Path
+    worklist: Worklist
+    failures: dict[str, str]
+    seconds: float
+    kept: int = 0
+    dry_run: bool = False
+
+    @property
+    def complete(self) -> bool:
+        """Whether every sequence is there and every file could be used."""
+        return not self.worklist.refused and (self.dry_run or not self.worklist.open)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain values for JSON."""
+        return {
+            "dataset": str(self.root),
+            "sequences": [order.sequence_id for order in self.worklist.orders],
+            "finished": sorted(
+                self.worklist.finished & {order.sequence_id for order in self.worklist.orders}
+            ),
+            "failed": self.failures,
+            "refused": {str(file.path): file.problem for file in self.worklist.refused},
+            "seconds": round(self.seconds, 3),
+            "complete": self.complete,
+        }
+
+    def report(self, *, quiet: bool = False, as_json: bool = False) -> None:
+        """Print the result: a table and what to do next, or JSON; errors in any case."""
+        if as_json:
+            Console(soft_wrap=True).print_json(json.dumps(self.as_dict()))
+            return
+        errors = Console(stderr=True, soft_wrap=True, highlight=False)
+        if not quiet:
+            self._print_table(Console())
+        for file in self.worklist.refused:
+            errors.print(f"refused: {file.problem}", markup=False)
+        for error in self.failures.values():
+            errors.print(f"failed: {error}", markup=False)
+
+    def _print_table(self, console: Console) -> None:
+        if self.dry_run:
+            console.print(self._plan_table())
+            to_make = len(self.worklist.open)
+            console.print(f"{to_make} to make, {len(self.worklist.orders) - to_make} finished")
+            return
+        console.print(self._made_table())
+        finished = [order for order in self.worklist.orders if order.sequence_id in self.worklist.finished]
+        made = len(finished) - self.kept
+        console.print(
+            f"{len(finished)} of {len(self.worklist.orders)} sequences in {self.root} "
+            f"({made} made in {self.seconds:.0f} s)",
+            soft_wrap=True,
+        )
+        if finished:
+            preview = DatasetLayout(self.root).sequence(finished[0].sequence_id).preview
+            console.print(f"Look at {preview}", soft_wrap=True)
+
+    def _plan_table(self) -> Table:
+        table = Table("sequence", "motion", "format", "people", "frames")
+        for order in self.worklist.orders:
+            frames, asked = order.motion.num_frames, order.recipe.frames
+            shown = "?" if frames is None else str(min(frames, asked or frames))
+            people = str(order.motion.num_people)
+            table.add_row(order.sequence_id, str(order.motion.path), order.motion.source, people, shown)
+        return table
+
+    def _made_table(self) -> Table:
+        layout = DatasetLayout(self.root)
+        table = Table("sequence", "people", "frames", "shots", "split", "visible")
+        for order in self.worklist.orders:
+            if order.sequence_id not in self.worklist.finished:
+                table.add_row(order.sequence_id, "", "", "[red]missing[/]", "", "")
+                continue
+            facts = read_summary(layout.sequence(order.sequence_id))
+            table.add_row(
+                order.sequence_id,
+                str(facts["people"]),
+                str(facts["frames"]),
+                ", ".join(facts["shots"]),
+                facts["split"],
+                f"{facts['mean_visible_fraction']:.2f}",
+            )
+        return table

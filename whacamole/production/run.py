@@ -1,0 +1,159 @@
+"""Making all sequences of a recipe, some at a time, each in a process of its own."""
+
+import os
+import subprocess
+import threading
+import time
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from dataclasses import dataclass, field
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from whacamole.dataset import DatasetLayout, read_json, write_index
+from whacamole.dataset.files import write_json
+from whacamole.errors import DatasetError
+from whacamole.production.attempt import Outcome, attempt
+from whacamole.production.progress import ProgressDisplay
+from whacamole.production.report import Production
+from whacamole.production.worklist import SequenceOrder, Worklist, failure_note, work_of
+from whacamole.recipe import Recipe
+
+__all__ = ["ATTEMPTS", "Production", "produce"]
+
+ATTEMPTS = 3
+"""How often a sequence is tried before it counts as failed."""
+
+MAY_DIFFER = frozenset({"motions", "shots_per_motion", "limit", "test_fraction"})
+"""What may change between two runs into one dataset: it adds sequences, but alters none."""
+
+
+def produce(
+    recipe: Recipe,
+    out: Path,
+    *,
+    jobs: int = 1,
+    device: str = "auto",
+    dry_run: bool = False,
+    quiet: bool = False,
+) -> Production:
+    """Make, or finish, the dataset of ``recipe`` in the folder ``out``.
+
+    Args:
+        jobs: sequences made at the same time.
+        device: "auto", "cpu" or "gpu".
+        dry_run: only say what would be made.
+        quiet: show no progress.
+
+    Raises:
+        MotionError: there is no motion to film.
+        RecipeError, BodyModelError: the recipe cannot be carried out.
+        DatasetError: ``out`` holds a dataset of another recipe, or something else.
+    """
+    layout = DatasetLayout(out.resolve())
+    _check_recipe(layout, recipe)
+    facts = _facts(recipe)
+    worklist = work_of(recipe, layout.root)
+    if dry_run:
+        return Production(layout.root, worklist, {}, 0.0, dry_run=True)
+    _open_dataset(layout, recipe)
+    started = time.monotonic()
+    failures = _make_all(worklist, jobs, device, quiet)
+    write_index(layout, facts, recipe.test_fraction)
+    finished = work_of(recipe, layout.root)
+    return Production(
+        layout.root, finished, failures, time.monotonic() - started, kept=len(worklist.finished)
+    )
+
+
+@dataclass
+class _Processes:
+    """The workers that run now, so that none outlives an interrupted run."""
+
+    running: set[subprocess.Popen[str]] = field(default_factory=set)
+    lock: threading.Lock = field(default_factory=threading.Lock)
+    stopped: bool = False
+
+    def add(self, process: subprocess.Popen[str]) -> None:
+        with self.lock:
+            self.running = {other for other in self.running if other.poll() is None} | {process}
+            if self.stopped:
+                process.terminate()
+
+    def stop(self) -> None:
+        with self.lock:
+            self.stopped = True
+            for process in self.running:
+                process.terminate()
+
+
+def _make_all(worklist: Worklist, jobs: int, device: str, quiet: bool) -> dict[str, str]:
+    """Make the open orders; return the one-line error of each that failed."""
+    threads = max(1, (os.cpu_count() or 1) // jobs)
+    processes = _Processes()
+    failures: dict[str, str] = {}
+    with ProgressDisplay(len(worklist.orders), len(worklist.orders) - len(worklist.open), quiet) as display:
+
+        def make(order: SequenceOrder) -> Outcome:
+            outcome = Outcome(False, "stopped")
+            failure_note(order).unlink(missing_ok=True)
+            for number in range(ATTEMPTS):
+                if processes.stopped:
+                    break
+                display.begin(order.sequence_id, number)
+                outcome = attempt(
+                    order, display.listen, threads=threads, device=device, running=processes.add
+                )
+                if outcome.done or not outcome.again:
+                    break
+            if not outcome.done and not processes.stopped:
+                write_json(failure_note(order), {"error": outcome.error})
+            display.end(order.sequence_id, outcome)
+            return outcome
+
+        with ThreadPoolExecutor(jobs) as pool:
+            futures = {pool.submit(make, order): order for order in worklist.open}
+            try:
+                for future in as_completed(futures):
+                    outcome = future.result()
+                    if not outcome.done:
+                        failures[futures[future].sequence_id] = outcome.error
+            except BaseException:
+                processes.stop()
+                pool.shutdown(wait=True, cancel_futures=True)
+                raise
+    return failures
+
+
+def _facts(recipe: Recipe) -> dict[str, Any]:
+    """Return what ``dataset.json`` says of the whole dataset."""
+    from whacamole.production.sequence import body_of
+
+    body = body_of(recipe)
+    return {
+        "generator": "whacamole",
+        "versions": {name: version(name) for name in ("whacamole", "bpy", "numpy", "scipy")},
+        "seed": recipe.seed,
+        "recipe": recipe.save_as_dict(),
+        "body_model": {"name": body.name, "sha256": body.sha256},
+    }
+
+
+def _check_recipe(layout: DatasetLayout, recipe: Recipe) -> None:
+    """Refuse to mix two recipes in one dataset."""
+    kept = layout.root / "recipe.json"
+    if not kept.exists():
+        if layout.root.exists() and any(layout.root.iterdir()):
+            raise DatasetError(f"{layout.root}: holds other files and no dataset; choose an empty --out")
+        return
+    before, now = read_json(kept), recipe.save_as_dict()
+    differing = [name for name in now if name not in MAY_DIFFER and before.get(name) != now[name]]
+    if differing:
+        changes = ", ".join(f"{name} {before.get(name)} is now {now[name]}" for name in differing)
+        raise DatasetError(f"{layout.root}: was begun with another recipe ({changes}); choose another --out")
+
+
+def _open_dataset(layout: DatasetLayout, recipe: Recipe) -> None:
+    layout.sequences.mkdir(parents=True, exist_ok=True)
+    layout.work.mkdir(exist_ok=True)
+    write_json(layout.root / "recipe.json", recipe.save_as_dict())

@@ -1,0 +1,161 @@
+"""Making one sequence: read, stage, plan, render, label, finish. Complete in the dataset, or absent."""
+
+import fcntl
+import shutil
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from camera_rigs import Plan
+from render_jobs import RenderJob, quality_preset, run_job
+from whacamole.body import BodyModel
+from whacamole.dataset import DatasetLayout, SequenceLayout, write_summary
+from whacamole.errors import DatasetError, MotionError, TakeError
+from whacamole.motion import Motion, read_motion
+from whacamole.production.filming import camera_neighbours, plan_camera
+from whacamole.production.labelling import label_sequence
+from whacamole.production.worklist import SequenceOrder, motion_checksum
+from whacamole.recipe import Recipe
+from whacamole.seeds import generator
+from whacamole.take import Take, stage_take
+
+__all__ = ["Say", "body_of", "make_sequence"]
+
+Say = Callable[..., None]
+"""Called as ``say(event, **facts)`` while the work goes on."""
+
+
+def body_of(recipe: Recipe) -> BodyModel:
+    """Return the body model that a recipe names.
+
+    Raises:
+        BodyModelError: the file is no SMPL-X-schema model.
+    """
+    return BodyModel.embedded() if recipe.body_model is None else BodyModel.load(recipe.body_model)
+
+
+def make_sequence(order: SequenceOrder, say: Say, *, threads: int, device: str) -> None:
+    """Make one sequence and move it into the dataset; do nothing where it is there already.
+
+    Whatever an earlier attempt left behind is used where it belongs to the same work (finished frames), and
+    made again where it does not.
+
+    Raises:
+        MotionError, TakeError: the motion cannot be used.
+        PlanError: no shot applies.
+        RenderJobError: the frames cannot be rendered.
+        DatasetError: another process is making this very sequence.
+    """
+    layout = DatasetLayout(order.root)
+    final = layout.sequence(order.sequence_id)
+    work = layout.work_of(order.sequence_id)
+    work.mkdir(parents=True, exist_ok=True)
+    with _only_one(work, order.sequence_id):
+        if final.summary.exists():
+            return
+        unfinished = SequenceLayout(work / "sequence")
+        _make_in(order, unfinished, work, say, threads=threads, device=device)
+        final.folder.parent.mkdir(exist_ok=True)
+        unfinished.folder.rename(final.folder)
+    shutil.rmtree(work, ignore_errors=True)
+
+
+def _make_in(
+    order: SequenceOrder, sequence: SequenceLayout, work: Path, say: Say, *, threads: int, device: str
+) -> None:
+    """Make all files of the sequence in the folder ``sequence``."""
+    recipe, body = order.recipe, body_of(order.recipe)
+    say("step", name="motion")
+    motion = _read(order)
+    say("step", name="scene")
+    try:
+        take = stage_take(
+            motion,
+            body,
+            frames=recipe.frames,
+            seed=recipe.seed,
+            shot_index=order.shot_index,
+            textures=work / "textures",
+        )
+    except TakeError as error:
+        raise TakeError(f"{motion.path}: {error}") from error
+    say("step", name="plan")
+    plan = plan_camera(take, recipe, order.shot_index)
+    job = render_job(take, plan, order)
+    job.save(work / "job")
+    say("step", name="render", frames=take.num_frames)
+    run_job(
+        work / "job", threads=threads, device=device, on_frame=lambda frame: say("frame", index=int(frame))
+    )
+    say("step", name="label", frames=take.num_frames)
+    shutil.rmtree(sequence.folder, ignore_errors=True)
+    sequence.folder.mkdir(parents=True)
+    labels = label_sequence(take, plan, body, work / "job" / "out", recipe, sequence)
+    for name in job.passes:
+        (work / "job" / "out" / name).rename(sequence.folder / name)
+    write_summary(sequence, _facts(order, take, plan, body, labels))
+
+
+def _read(order: SequenceOrder) -> Motion:
+    motion = read_motion(order.motion)
+    if not motion.people:
+        raise MotionError(f"{motion.path}: holds no person; leave the file out")
+    return motion
+
+
+def render_job(take: Take, plan: Plan, order: SequenceOrder) -> RenderJob:
+    """Return the job that films ``take`` by ``plan``."""
+    recipe = order.recipe
+    people = tuple(mesh for performer in take.performers for mesh in performer.meshes)
+    noise = generator(recipe.seed, take.motion.id, order.shot_index, "sampling")
+    return RenderJob(
+        camera=plan.path,
+        camera_neighbours=camera_neighbours(plan.path),
+        meshes=take.stage.meshes + people,
+        lights=take.stage.lights,
+        environment=take.stage.environment,
+        exposure=take.stage.exposure,
+        quality=quality_preset(recipe.quality),
+        passes=recipe.passes,
+        image_format=recipe.image_format,
+        seed=int(noise.integers(2**31)),
+    )
+
+
+def _facts(
+    order: SequenceOrder, take: Take, plan: Plan, body: BodyModel, labels: dict[str, Any]
+) -> dict[str, Any]:
+    """Return what ``sequence.json`` says beside the checksums."""
+    visible = labels["visible_fraction"][labels["valid"]]
+    return {
+        "id": order.sequence_id,
+        "motion_id": take.motion.id,
+        "motion_source": take.motion.source,
+        "motion_sha256": motion_checksum(order.motion),
+        "motion_licence": take.motion.licence,
+        "first_frame": take.first_frame,
+        "shot_index": order.shot_index,
+        "frames": take.num_frames,
+        "fps": plan.path.fps,
+        "width": plan.path.width,
+        "height": plan.path.height,
+        "people": len(take.performers),
+        "interactive": take.motion.interactive,
+        "shots": [shot.kind for shot in plan.shots],
+        "stage": take.stage.name,
+        "passes": list(order.recipe.passes),
+        "body_model": body.name,
+        "mean_visible_fraction": round(float(visible.mean()), 6) if visible.size else 0.0,
+    }
+
+
+@contextmanager
+def _only_one(work: Path, sequence_id: str) -> Iterator[None]:
+    """Hold the sequence's lock, which the system lets go of when the process ends, however it ends."""
+    with (work / "lock").open("w") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise DatasetError(f"{sequence_id}: another process is making it; wait for it") from None
+        yield

@@ -1,0 +1,118 @@
+"""What there is to make: one order a sequence, each independent of all the others."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Self
+
+from whacamole.dataset import DatasetLayout, read_summary
+from whacamole.dataset.files import sha256_of
+from whacamole.errors import DatasetError
+from whacamole.motion import MotionFile, find_motions
+from whacamole.recipe import Recipe
+
+__all__ = ["SequenceOrder", "Worklist", "failure_note", "motion_checksum", "work_of"]
+
+
+@dataclass(frozen=True)
+class SequenceOrder:
+    """Everything a process needs to make one sequence, as plain data.
+
+    Attributes:
+        sequence_id: its name in the dataset.
+        motion: the file(s) it comes from.
+        shot_index: the how-manieth sequence of this motion.
+        root: the dataset's folder.
+        recipe: what is made.
+    """
+
+    sequence_id: str
+    motion: MotionFile
+    shot_index: int
+    root: Path
+    recipe: Recipe
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain values for JSON."""
+        return {
+            "sequence_id": self.sequence_id,
+            "motion": {
+                "id": self.motion.id,
+                "paths": [str(path) for path in self.motion.paths],
+                "source": self.motion.source,
+            },
+            "shot_index": self.shot_index,
+            "root": str(self.root),
+            "recipe": self.recipe.save_as_dict(),
+        }
+
+    @classmethod
+    def from_dict(cls, value: dict[str, Any]) -> Self:
+        """Return the order that :meth:`as_dict` wrote."""
+        motion = value["motion"]
+        return cls(
+            sequence_id=value["sequence_id"],
+            motion=MotionFile(
+                id=motion["id"],
+                paths=tuple(Path(path) for path in motion["paths"]),
+                source=motion["source"],
+            ),
+            shot_index=value["shot_index"],
+            root=Path(value["root"]),
+            recipe=Recipe.model_validate(value["recipe"]),
+        )
+
+
+@dataclass(frozen=True)
+class Worklist:
+    """The orders of a run, what is finished of them, and the files that cannot be used."""
+
+    orders: tuple[SequenceOrder, ...]
+    finished: frozenset[str]
+    refused: tuple[MotionFile, ...]
+
+    @property
+    def open(self) -> tuple[SequenceOrder, ...]:
+        """The orders still to be made."""
+        return tuple(order for order in self.orders if order.sequence_id not in self.finished)
+
+
+def work_of(recipe: Recipe, root: Path) -> Worklist:
+    """Return what ``recipe`` asks for in the dataset at ``root``.
+
+    Orders go shot by shot, so that a run stopped early has seen every motion.
+
+    Raises:
+        MotionError: there is no motion at all.
+        DatasetError: a finished sequence was made from another file of the same name.
+    """
+    files = find_motions(recipe.motions if recipe.motions is not None else embedded_motions())
+    usable = [file for file in files if file.problem is None]
+    orders = [
+        SequenceOrder(f"{file.id}-{shot:02d}", file, shot, root, recipe)
+        for shot in range(recipe.shots_per_motion)
+        for file in usable
+    ][: recipe.limit]
+    finished = frozenset(DatasetLayout(root).finished())
+    for order in orders:
+        if order.sequence_id in finished:
+            _check_same_motion(order)
+    return Worklist(tuple(orders), finished, tuple(file for file in files if file.problem is not None))
+
+
+def failure_note(order: SequenceOrder) -> Path:
+    """Return the file that says why a sequence was given up."""
+    return DatasetLayout(order.root).work_of(order.sequence_id) / "failed.json"
+
+
+def motion_checksum(motion: MotionFile) -> str:
+    """Return the sha256 of the motion's file, or those of its files joined by ``+``."""
+    return "+".join(sha256_of(path) for path in motion.paths)
+
+
+def _check_same_motion(order: SequenceOrder) -> None:
+    made_of = read_summary(DatasetLayout(order.root).sequence(order.sequence_id)).get("motion_sha256")
+    if made_of != motion_checksum(order.motion):
+        raise DatasetError(
+            f"{order.root}: {order.sequence_id} was made from another file than {order.motion.path}; "
+            "choose another --out, or delete the sequence's folder"
+        )

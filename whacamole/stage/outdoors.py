@@ -1,0 +1,146 @@
+"""Stages under the sky."""
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from render_jobs import Environment, Lamp, Material
+from whacamole.stage.floor import Floor
+from whacamole.stage.props import furnish, plant_trees, prop_materials
+from whacamole.stage.stage import SetBuilder, Stage
+from whacamole.stage.surroundings import daylight, ground, house_fronts
+from whacamole.stage.textures import TEXTURES
+
+__all__ = ["courtyard", "market", "night_street", "park", "plaza", "rooftop"]
+
+Paths = NDArray[np.float64]
+STREET_FURNITURE = ("crate", "planter", "column", "bench", "wall", "bollard")
+
+
+def plaza(rng: np.random.Generator, paths: Paths, folder: Path) -> Stage:
+    """A town square by day: paved, house fronts, street furniture."""
+    build, floor = SetBuilder(folder), Floor(paths)
+    texture = str(rng.choice(["paving", "paving", "asphalt", "concrete", "brick"]))
+    ground(build, floor, texture, float(rng.uniform(2.4, 3.6)), rng)
+    house_fronts(build, floor, _some_sides(rng, 0.7), rng)
+    furnish(build, floor, STREET_FURNITURE, int(rng.integers(9, 16)), _masonry(build, rng), rng)
+    sun, sky = daylight(rng, (22.0, 62.0))
+    return build.stage("plaza", (sun,), sky)
+
+
+def park(rng: np.random.Generator, paths: Paths, folder: Path) -> Stage:
+    """A meadow with trees, benches and a few walls."""
+    build, floor = SetBuilder(folder), Floor(paths)
+    ground(build, floor, "grass", float(rng.uniform(3.0, 4.5)), rng)
+    furnish(
+        build,
+        floor,
+        ("bench", "planter", "wall"),
+        int(rng.integers(4, 8)),
+        _masonry(build, rng),
+        rng,
+    )
+    plant_trees(build, floor, int(rng.integers(8, 14)), rng, beyond=14.0)
+    sun, sky = daylight(rng, (25.0, 65.0))
+    return build.stage("park", (sun,), sky)
+
+
+def market(rng: np.random.Generator, paths: Paths, folder: Path) -> Stage:
+    """A lane of stalls between houses in the low light of morning or evening."""
+    build, floor = SetBuilder(folder), Floor(paths)
+    ground(build, floor, str(rng.choice(["brick", "paving", "concrete"])), float(rng.uniform(2.0, 3.0)), rng)
+    house_fronts(build, floor, _some_sides(rng, 0.9), rng)
+    surfaces = (("cloth", 1.0), ("cloth", 0.7), ("wood", 1.0), ("cloth", 1.3), ("wood", 0.7))
+    kinds = ("stall", "stall", "crate", "barrel", "crate", "column")
+    furnish(build, floor, kinds, int(rng.integers(14, 22)), prop_materials(build, surfaces, rng), rng)
+    sun, sky = daylight(rng, (12.0, 28.0))
+    return build.stage("market", (sun,), sky)
+
+
+def courtyard(rng: np.random.Generator, paths: Paths, folder: Path) -> Stage:
+    """A yard closed in by houses, lit by an overcast sky: soft light, no hard shadow."""
+    build, floor = SetBuilder(folder), Floor(paths)
+    ground(build, floor, str(rng.choice(["paving", "concrete", "brick"])), float(rng.uniform(2.0, 3.5)), rng)
+    house_fronts(build, floor, np.ones(4, bool), rng)
+    furnish(build, floor, STREET_FURNITURE, int(rng.integers(7, 13)), _masonry(build, rng), rng)
+    light = Environment(
+        kind="hdri",
+        hdri=str(rng.choice(["courtyard", "city", "forest"])),  # type: ignore[arg-type]
+        rotation=float(rng.uniform(0.0, 360.0)),
+        strength=1.0,
+        backdrop=(0.72, 0.76, 0.82),
+    )
+    return build.stage("courtyard", (), light)
+
+
+def rooftop(rng: np.random.Generator, paths: Paths, folder: Path) -> Stage:
+    """A flat roof at sunrise or sunset: parapets, vents, the light of an HDRI from low down."""
+    build, floor = SetBuilder(folder), Floor(paths)
+    ground(build, floor, str(rng.choice(["concrete", "asphalt", "wood"])), float(rng.uniform(2.5, 4.0)), rng)
+    surfaces = (("concrete", 1.4), ("plaster", 2.0), ("brick", 1.4))
+    furnish(
+        build, floor, ("vent", "vent", "wall", "column", "crate"), int(rng.integers(10, 16)),
+        prop_materials(build, surfaces, rng), rng,
+    )  # fmt: skip
+    parapet = build.material("parapet", TEXTURES["brick"], rng, metres=1.6)
+    reach = floor.reach + float(rng.uniform(12.0, 15.0))
+    for index, (x, y) in enumerate(((1, 0), (0, 1), (-1, 0), (0, -1))):
+        size = (0.4, 2.0 * reach, 1.1) if x else (2.0 * reach, 0.4, 1.1)
+        build.add_box(f"parapet-{index}", (x * reach, y * reach, 0.0), size, parapet)
+    light = Environment(
+        kind="hdri",
+        hdri=str(rng.choice(["sunrise", "sunset"])),  # type: ignore[arg-type]
+        rotation=float(rng.uniform(0.0, 360.0)),
+        strength=1.2,
+    )
+    return build.stage("rooftop", (), light, exposure=0.3)
+
+
+def night_street(rng: np.random.Generator, paths: Paths, folder: Path) -> Stage:
+    """A street at night under lamps: warm pools of light, dark fronts."""
+    build, floor = SetBuilder(folder), Floor(paths)
+    ground(build, floor, str(rng.choice(["asphalt", "paving"])), float(rng.uniform(2.4, 3.4)), rng)
+    house_fronts(build, floor, _some_sides(rng, 0.8), rng)
+    furnish(build, floor, STREET_FURNITURE, int(rng.integers(8, 14)), _masonry(build, rng), rng)
+    warm = (1.0, float(rng.uniform(0.72, 0.86)), float(rng.uniform(0.45, 0.62)))
+    night = Environment(kind="color", color=(0.10, 0.13, 0.22), strength=0.6)
+    return build.stage("night-street", _street_lamps(build, floor, warm, rng), night, exposure=0.6)
+
+
+def _street_lamps(
+    build: SetBuilder, floor: Floor, color: tuple[float, float, float], rng: np.random.Generator
+) -> tuple[Lamp, ...]:
+    """Stand lamp posts around the paths so that no part of them is dark."""
+    post = build.material("post", TEXTURES["concrete"], rng, metres=2.0)
+    low, high = floor.low - 3.8, floor.high + 3.8
+    columns, rows = np.maximum(np.ceil((high - low) / 9.0), 1).astype(int) + 1
+    lamps = []
+    for x in np.linspace(low[0], high[0], columns):
+        for y in np.linspace(low[1], high[1], rows):
+            if np.hypot(*(floor.paths - [x, y]).T).min() < 3.4:
+                continue
+            index, height = len(lamps), float(rng.uniform(4.2, 5.2))
+            build.add_cylinder(f"post-{index}", (float(x), float(y), 0.0), 0.07, height, post)
+            nearest = floor.paths[int(np.argmin(np.hypot(*(floor.paths - [x, y]).T)))]
+            lamp = Lamp(
+                position=(float(x), float(y), height + 0.15),
+                target=(float(nearest[0]), float(nearest[1]), 0.8),
+                power_w=float(rng.uniform(260.0, 420.0)),
+                size=0.5,
+                color=color,
+            )
+            lamps.append(lamp)
+    return tuple(lamps)
+
+
+def _masonry(build: SetBuilder, rng: np.random.Generator) -> list[Material]:
+    surfaces = (("wood", 1.2), ("concrete", 1.5), ("brick", 1.6), ("plaster", 2.0), ("wood", 0.8))
+    return prop_materials(build, surfaces, rng)
+
+
+def _some_sides(rng: np.random.Generator, share: float) -> NDArray[np.bool_]:
+    """Draw which of four sides are built up, at least one."""
+    sides = rng.random(4) < share
+    sides[int(rng.integers(4))] = True
+    return sides

@@ -1,0 +1,135 @@
+"""What encloses a stage and lights it: houses, rooms, daylight, lamps."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from render_jobs import Environment, Lamp, Material, Sun
+from whacamole.stage.floor import Floor
+from whacamole.stage.shapes import ground_grid
+from whacamole.stage.stage import SetBuilder
+from whacamole.stage.textures import TEXTURES
+
+__all__ = ["FRONT_DISTANCE", "ceiling_lamps", "daylight", "ground", "house_fronts", "room"]
+
+FRONT_DISTANCE = (13.0, 21.0)
+"""From the people's paths to a house front [m]: beyond the reach of a long shot's camera."""
+
+FRONT_KINDS = 4
+"""Different house fronts on one square."""
+
+
+def ground(build: SetBuilder, floor: Floor, texture: str, metres: float, rng: np.random.Generator) -> None:
+    """Lay the ground far beyond everything that stands on it."""
+    material = build.material("ground", TEXTURES[texture], rng, metres=metres)
+    build.add("ground", ground_grid(floor.reach + FRONT_DISTANCE[1] + 40.0), material)
+
+
+def daylight(rng: np.random.Generator, elevation: tuple[float, float]) -> tuple[Sun, Environment]:
+    """Draw a sun between two elevations [degrees] and the sky that goes with it; a low sun is warmer."""
+    height, azimuth = float(rng.uniform(*elevation)), float(rng.uniform(0.0, 360.0))
+    up, around = np.radians(height), np.radians(azimuth)
+    warmth = float(np.clip((40.0 - height) / 40.0, 0.0, 1.0))
+    sun = Sun(
+        direction=(-np.cos(up) * np.cos(around), -np.cos(up) * np.sin(around), -np.sin(up)),
+        strength=float(rng.uniform(2.2, 3.6)),
+        angle=1.0,
+        color=(1.0, 0.97 - 0.12 * warmth, 0.92 - 0.3 * warmth),
+    )
+    sky = Environment(
+        kind="sky", sun_elevation=height, rotation=azimuth, strength=float(rng.uniform(0.8, 1.2))
+    )
+    return sun, sky
+
+
+def house_fronts(build: SetBuilder, floor: Floor, sides: NDArray[np.bool_], rng: np.random.Generator) -> None:
+    """Line the given sides (+x, +y, −x, −y) with houses of varied height."""
+    storeys = [float(rng.uniform(2.9, 3.4)) for _ in range(FRONT_KINDS)]
+    fronts = [
+        build.material(f"front-{index}", TEXTURES["facade"], rng, metres=storey, roughness=0.7)
+        for index, storey in enumerate(storeys)
+    ]
+    for side in np.flatnonzero(sides):
+        _street_side(build, floor, int(side), storeys, fronts, rng)
+
+
+def _street_side(
+    build: SetBuilder,
+    floor: Floor,
+    side: int,
+    storeys: list[float],
+    fronts: list[Material],
+    rng: np.random.Generator,
+) -> None:
+    center, half = (floor.low + floor.high) / 2.0, (floor.high - floor.low) / 2.0
+    axis, sign = side % 2, 1.0 if side < 2 else -1.0
+    distance = half[axis] + rng.uniform(*FRONT_DISTANCE)
+    along, stop = -half[1 - axis] - 16.0, half[1 - axis] + 16.0
+    index = 0
+    while along < stop:
+        kind = int(rng.integers(FRONT_KINDS))
+        width, depth = storeys[kind] * int(rng.integers(2, 5)), float(rng.uniform(7.0, 11.0))
+        place = center.copy()
+        place[axis] += sign * (distance + depth / 2.0)
+        place[1 - axis] += along + width / 2.0
+        footprint = (depth, width) if axis == 0 else (width, depth)
+        height = storeys[kind] * int(rng.integers(2, 5))
+        base = (float(place[0]), float(place[1]), 0.0)
+        build.add_box(f"house-{side}-{index}", base, (*footprint, height), fronts[kind])
+        along += width
+        index += 1
+
+
+def room(
+    build: SetBuilder,
+    floor: Floor,
+    *,
+    margin: float,
+    height: float,
+    floor_texture: tuple[str, float],
+    wall_texture: tuple[str, float],
+    rng: np.random.Generator,
+) -> None:
+    """Build floor, four walls and a ceiling around the paths, and bound the camera by them.
+
+    Args:
+        margin: from the people's paths to a wall [m].
+        height: of the ceiling [m].
+        floor_texture, wall_texture: name, and metres after which it repeats.
+    """
+    low, high = floor.low - margin, floor.high + margin
+    floor.bounds = np.stack([low, high])
+    build.bounds = ((float(low[0]), float(low[1]), 0.0), (float(high[0]), float(high[1]), height))
+    ground_material = build.material("floor", TEXTURES[floor_texture[0]], rng, metres=floor_texture[1])
+    build.add("floor", ground_grid(float(np.abs(floor.bounds).max()) + 1.0), ground_material)
+    thick = 0.3
+    (x0, y0), (x1, y1) = low, high
+    middle, length = (low + high) / 2.0, high - low
+    walls = {
+        "wall-x": ((float(x1 + thick / 2), float(middle[1])), (thick, float(length[1]) + 2 * thick)),
+        "wall-y": ((float(middle[0]), float(y1 + thick / 2)), (float(length[0]) + 2 * thick, thick)),
+        "wall-minus-x": ((float(x0 - thick / 2), float(middle[1])), (thick, float(length[1]) + 2 * thick)),
+        "wall-minus-y": ((float(middle[0]), float(y0 - thick / 2)), (float(length[0]) + 2 * thick, thick)),
+    }
+    for name, (place, footprint) in walls.items():
+        # Each wall has its own grain, so that odometry cannot take one for another.
+        material = build.material(name, TEXTURES[wall_texture[0]], rng, metres=wall_texture[1])
+        build.add_box(name, (*place, 0.0), (*footprint, height), material)
+    ceiling = build.material("ceiling", TEXTURES["plaster"], rng, metres=3.0)
+    top = (float(middle[0]), float(middle[1]), height)
+    build.add_box("ceiling", top, (float(length[0]) + 0.6, float(length[1]) + 0.6, 0.2), ceiling)
+
+
+def ceiling_lamps(
+    floor: Floor, height: float, power: float, color: tuple[float, float, float], spacing: float
+) -> tuple[Lamp, ...]:
+    """Hang square lamps below a ceiling, one every ``spacing`` metres, ``power`` watts each."""
+    assert floor.bounds is not None, "lamps hang in a room"
+    low, high = floor.bounds
+    columns, rows = np.maximum(np.round((high - low) / spacing), 1).astype(int)
+    lamps = []
+    for x in low[0] + (np.arange(columns) + 0.5) * (high[0] - low[0]) / columns:
+        for y in low[1] + (np.arange(rows) + 0.5) * (high[1] - low[1]) / rows:
+            position = (float(x), float(y), height - 0.05)
+            target = (float(x), float(y), 0.0)
+            lamps.append(Lamp(position=position, target=target, power_w=power, size=1.2, color=color))
+    return tuple(lamps)
