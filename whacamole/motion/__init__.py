@@ -9,7 +9,8 @@
 """
 
 from whacamole.motion.data import FPS, Motion, MotionFile, MotionPerson
+from whacamole.motion.embedded import embedded_motions
 from whacamole.motion.find import find_motions
 from whacamole.motion.read import read_motion
 
-__all__ = ["FPS", "Motion", "MotionFile", "MotionPerson", "find_motions", "read_motion"]
+__all__ = ["FPS", "Motion", "MotionFile", "MotionPerson", "embedded_motions", "find_motions", "read_motion"]

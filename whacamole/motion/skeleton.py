@@ -10,8 +10,8 @@ from whacamole.motion.data import FloatArray
 # name, parent, rest position [m] of a person 1.7 m tall: y up, facing +z, pelvis where SMPL-X has it.
 _BODY: tuple[tuple[str, int, tuple[float, float, float]], ...] = (
     ("pelvis", -1, (0.0, -0.351, 0.012)),
-    ("left_hip", 0, (0.061, -0.444, -0.014)),
-    ("right_hip", 0, (-0.061, -0.444, -0.014)),
+    ("left_hip", 0, (0.095, -0.424, -0.012)),
+    ("right_hip", 0, (-0.095, -0.424, -0.012)),
     ("spine1", 0, (0.0, -0.246, -0.028)),
     ("left_knee", 1, (0.115, -0.830, -0.026)),
     ("right_knee", 2, (-0.115, -0.830, -0.026)),
