@@ -9,45 +9,44 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from camera_rigs import Plan
-from render_jobs import PASSES, read_exr
+from render_jobs import PASSES
+from render_jobs.images import read_exr
 from whacamole.body import BodyModel
 from whacamole.dataset import SequenceLayout
 from whacamole.dataset.files import write_arrays, write_json
-from whacamole.labels.camera import camera_arrays
-from whacamole.labels.contact import contact_arrays
-from whacamole.labels.overlay import preview_strip
-from whacamole.labels.people import FrameImages, LabelledPerson, PeopleLabels, WorldMesh
-from whacamole.recipe import Recipe
+from whacamole.labels import FrameImages, LabelledPerson, label_sequence
+from whacamole.labels.people import WorldMesh
 from whacamole.take import Performer, Take
 
-__all__ = ["label_sequence"]
+__all__ = ["write_labels"]
 
 
-def label_sequence(
-    take: Take, plan: Plan, body: BodyModel, frames: Path, recipe: Recipe, sequence: SequenceLayout
+def write_labels(
+    take: Take,
+    plan: Plan,
+    body: BodyModel,
+    frames: Path,
+    sequence: SequenceLayout,
+    on_frame: Callable[[int], None],
 ) -> dict[str, NDArray[Any]]:
-    """Write ``camera.npz``, ``people.npz``, ``contact.npz``, ``shot.json`` and ``preview.jpg``.
+    """Write ``camera.npz``, ``people.npz``, ``contact.npz`` and ``shot.json``; return the arrays of people.npz.
 
     Args:
         frames: folder of the rendered passes.
-
-    Returns:
-        The arrays of ``people.npz``.
+        on_frame: told after each frame.
     """
-    write_arrays(sequence.camera, camera_arrays(plan.path))
+
+    def images(frame: int) -> FrameImages:
+        mask = np.asarray(Image.open(frames / PASSES["mask"].file(frame)))
+        return FrameImages(mask, read_exr(frames / PASSES["depth"].file(frame))["Z"])
+
+    people = [_labelled(person, take) for person in take.performers]
+    labels = label_sequence(people, body, plan.path, images, on_frame=on_frame)
+    write_arrays(sequence.camera, labels.camera)
+    write_arrays(sequence.people, labels.people)
+    write_arrays(sequence.contact, labels.contact)
     write_json(sequence.shot, plan.to_json())
-    labels = PeopleLabels([_labelled(person, take) for person in take.performers], body, plan.path)
-    for frame in range(take.num_frames):
-        images = FrameImages(
-            mask=np.asarray(Image.open(frames / PASSES["mask"].file(frame))),
-            depth=read_exr(frames / PASSES["depth"].file(frame))["Z"],
-        )
-        labels.add(frame, [person.posed.vertices[frame + 1] for person in take.performers], images)
-    people = labels.arrays()
-    write_arrays(sequence.people, people)
-    write_arrays(sequence.contact, contact_arrays(take, body))
-    preview_strip(sequence, frames, recipe.image_format)
-    return people
+    return labels.people
 
 
 def _labelled(person: Performer, take: Take) -> LabelledPerson:

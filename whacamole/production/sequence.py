@@ -14,7 +14,7 @@ from whacamole.dataset import DatasetLayout, SequenceLayout, write_summary
 from whacamole.errors import DatasetError, MotionError, TakeError
 from whacamole.motion import Motion, read_motion
 from whacamole.production.filming import camera_neighbours, plan_camera
-from whacamole.production.labelling import label_sequence
+from whacamole.production.labelling import write_labels
 from whacamole.production.worklist import SequenceOrder, motion_checksum
 from whacamole.recipe import Recipe
 from whacamole.seeds import generator
@@ -91,9 +91,11 @@ def _make_in(
     say("step", name="label", frames=take.num_frames)
     shutil.rmtree(sequence.folder, ignore_errors=True)
     sequence.folder.mkdir(parents=True)
-    labels = label_sequence(take, plan, body, work / "job" / "out", recipe, sequence)
+    rendered = work / "job" / "out"
+    labels = write_labels(take, plan, body, rendered, sequence, lambda frame: say("labelled", index=frame))
     for name in job.passes:
-        (work / "job" / "out" / name).rename(sequence.folder / name)
+        (rendered / name).rename(sequence.folder / name)
+    write_preview(sequence)
     write_summary(sequence, _facts(order, take, plan, body, labels))
 
 
@@ -145,6 +147,7 @@ def _facts(
         "shots": [shot.kind for shot in plan.shots],
         "stage": take.stage.name,
         "passes": list(order.recipe.passes),
+        "image_format": order.recipe.image_format,
         "body_model": body.name,
         "mean_visible_fraction": round(float(visible.mean()), 6) if visible.size else 0.0,
     }

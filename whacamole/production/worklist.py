@@ -7,7 +7,7 @@ from typing import Any, Self
 from whacamole.dataset import DatasetLayout, read_summary
 from whacamole.dataset.files import sha256_of
 from whacamole.errors import DatasetError
-from whacamole.motion import MotionFile, find_motions
+from whacamole.motion import MotionFile, embedded_motions, find_motions
 from whacamole.recipe import Recipe
 
 __all__ = ["SequenceOrder", "Worklist", "failure_note", "motion_checksum", "work_of"]

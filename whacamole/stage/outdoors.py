@@ -115,7 +115,7 @@ def _street_lamps(
     post = build.material("post", TEXTURES["concrete"], rng, metres=2.0)
     low, high = floor.low - 3.8, floor.high + 3.8
     columns, rows = np.maximum(np.ceil((high - low) / 9.0), 1).astype(int) + 1
-    lamps = []
+    lamps: list[Lamp] = []
     for x in np.linspace(low[0], high[0], columns):
         for y in np.linspace(low[1], high[1], rows):
             if np.hypot(*(floor.paths - [x, y]).T).min() < 3.4:

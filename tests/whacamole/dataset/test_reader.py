@@ -1,0 +1,87 @@
+"""Reading: what was written comes back, and what is not there is named."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import whacamole
+from whacamole.dataset import Dataset, DatasetLayout, write_index, write_summary
+from whacamole.dataset.files import write_arrays
+from whacamole.errors import DatasetError
+
+FRAMES = 7
+
+
+@pytest.fixture
+def data(tmp_path: Path) -> Dataset:
+    layout = DatasetLayout(tmp_path)
+    for number, name in enumerate(("run", "walk")):
+        sequence = layout.sequence(f"{name}-00")
+        (sequence.folder / "rgb").mkdir(parents=True)
+        for frame in range(FRAMES):
+            image = np.full((4, 6, 3), 10 * number + frame, np.uint8)
+            Image.fromarray(image).save(sequence.folder / "rgb" / f"{frame:06d}.png")
+        write_arrays(sequence.camera, {"K": np.eye(3)[None] * (number + 1)})
+        facts = {
+            "motion_id": name,
+            "frames": FRAMES,
+            "width": 6,
+            "height": 4,
+            "passes": ["rgb"],
+            "image_format": "png",
+        }
+        write_summary(sequence, facts)
+    write_index(layout, {"seed": 1}, test_fraction=0.0)
+    return whacamole.open(tmp_path)
+
+
+def test_sequences_come_by_name_by_number_and_in_order(data: Dataset) -> None:
+    assert [sequence.id for sequence in data] == ["run-00", "walk-00"]
+    assert data[1].id == data["walk-00"].id
+    assert "walk-00" in data
+    assert len(data) == 2
+
+
+def test_frames_and_arrays_are_those_written(data: Dataset) -> None:
+    walk = data["walk-00"]
+    assert (walk.rgb(3) == 13).all()
+    np.testing.assert_array_equal(walk.camera["K"][0], 2 * np.eye(3))
+    assert (len(walk), walk.size) == (FRAMES, (6, 4))
+
+
+@pytest.mark.parametrize(
+    ("length", "stride", "starts"),
+    [(3, None, [0, 3]), (3, 2, [0, 2, 4]), (7, None, [0]), (8, None, []), (1, 3, [0, 3, 6])],
+)
+def test_clips_are_whole_and_in_place(
+    data: Dataset, length: int, stride: int | None, starts: list[int]
+) -> None:
+    clips = list(data[0].clips(length, stride))
+    assert [clip.start for clip in clips] == starts
+    assert all(len(clip) == length and clip[-1] < FRAMES for clip in clips)
+
+
+def test_splits_are_datasets(data: Dataset) -> None:
+    assert [sequence.id for sequence in data.split("train")] == ["run-00", "walk-00"]
+    assert len(data.split("test")) == 0
+
+
+def test_what_is_not_there_is_named(data: Dataset, tmp_path: Path) -> None:
+    with pytest.raises(DatasetError, match="jump-00"):
+        data["jump-00"]
+    with pytest.raises(DatasetError, match="depth was not rendered"):
+        data[0].depth(0)
+    with pytest.raises(IndexError):
+        data[0].rgb(FRAMES)
+    with pytest.raises(DatasetError, match="validation"):
+        data.split("validation")
+    with pytest.raises(DatasetError, match=r"dataset\.json"):
+        whacamole.open(tmp_path / "nowhere")
+    (data[0].layout.folder / "rgb" / "000001.png").write_bytes(b"half an ima")
+    with pytest.raises(DatasetError, match=r"000001\.png"):
+        data[0].rgb(1)
+    data[0].layout.camera.write_bytes(b"PK\x03\x04")
+    with pytest.raises(DatasetError, match=r"camera\.npz"):
+        data[0].camera  # noqa: B018
