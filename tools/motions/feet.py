@@ -50,7 +50,10 @@ def travel(soles: FloatArray, fps: float) -> FloatArray:
     velocity = np.gradient(soles, axis=1)[..., [0, 2]] * fps
     speed = np.linalg.norm(velocity, axis=-1)
     floor = np.percentile(soles[..., 1].min(axis=(0, 2)), 5.0)
-    load = np.clip(1.0 - (soles[..., 1] - floor - 0.02) / 0.04, 0.0, 1.0)
+    # A foot bears the body where it is low, does not rise or fall and is no foot in mid-swing.
+    low = np.clip((0.10 - soles[..., 1] + floor) / 0.04, 0.0, 1.0)
+    calm = np.clip((0.8 - np.abs(np.gradient(soles[..., 1], axis=1)) * fps) / 0.4, 0.0, 1.0)
+    load = low * calm * np.clip(2.5 - speed, 0.0, 1.0)
     weight = load / (0.05 + speed**2)
     carried = load.max(axis=(0, 2)) > 0.3
     total = np.maximum(weight.sum(axis=(0, 2)), 1e-9)
