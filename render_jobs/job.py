@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
+from numpy.typing import NDArray
 
 from render_jobs.errors import RenderJobError
 from render_jobs.passes import DEFAULT_PASSES, checked_passes
@@ -77,23 +78,30 @@ class RenderJob:
         object.__setattr__(self, "passes", checked_passes(self.passes))
         self._check_settings()
         _check_meshes(self.meshes, self.num_frames)
-        _check_camera(self.camera)
-        if self.camera_neighbours is not None:
-            if self.camera_neighbours.num_frames != 2:
-                raise RenderJobError(
-                    f"camera_neighbours has {self.camera_neighbours.num_frames} frames, expected 2: −1 and T"
-                )
-            _check_camera(self.camera_neighbours)
+        _check_image(self.camera)
+        neighbours = self.camera_neighbours
+        if neighbours is not None and neighbours.num_frames != 2:
+            raise RenderJobError(
+                f"camera_neighbours has {neighbours.num_frames} frames, expected 2: −1 and T"
+            )
+        _check_camera(*self.camera_with_neighbours(), self.camera.width, self.camera.height)
 
     @property
     def num_frames(self) -> int:
         """The number of images, T."""
-        return self.camera.num_frames
+        return int(self.camera.num_frames)
 
     @property
     def max_track_id(self) -> int:
         """The largest value in the masks."""
         return max(mesh.track_id for mesh in self.meshes)
+
+    def camera_with_neighbours(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """``K`` ``(T + 2, 3, 3)`` and ``T_world_camera`` ``(T + 2, 4, 4)`` of the frames −1 … T."""
+        ends = self.camera if self.camera_neighbours is None else self.camera_neighbours
+        K = np.concatenate([ends.K[:1], self.camera.K, ends.K[-1:]])
+        pose = np.concatenate([ends.T_world_camera[:1], self.camera.T_world_camera, ends.T_world_camera[-1:]])
+        return K.astype(np.float64), pose.astype(np.float64)
 
     def save(self, folder: Path | str) -> None:
         """Write the job folder in one step.
@@ -149,17 +157,23 @@ def _check_meshes(meshes: Sequence[Mesh], num_frames: int) -> None:
             )
 
 
-def _check_camera(camera: CameraPath) -> None:
+def _check_image(camera: CameraPath) -> None:
     if camera.num_frames < 1:
         raise RenderJobError("the camera path has no frame")
     if not 16 <= camera.width <= 16384 or not 16 <= camera.height <= 16384:
         raise RenderJobError(f"image size {camera.width}x{camera.height} is outside 16..16384 pixels")
-    K, pose = np.asarray(camera.K), np.asarray(camera.T_world_camera)
+
+
+def _check_camera(K: NDArray[np.float64], pose: NDArray[np.float64], width: int, height: int) -> None:
     if not (np.isfinite(K).all() and np.isfinite(pose).all()):
         raise RenderJobError("the camera path holds NaN or infinity")
     if (K[:, 0, 0] <= 0).any() or (K[:, 1, 1] <= 0).any() or (np.abs(K[:, 0, 1]) > 1e-9).any():
         raise RenderJobError("the camera matrix K needs positive focal lengths and no skew")
-    off_centre = np.abs(K[:, :2, 2] / (camera.width, camera.height) - 0.5)
+    if np.ptp(K[:, 1, 1] / K[:, 0, 0]) > 1e-6:
+        raise RenderJobError(
+            "the camera matrix K changes its ratio of focal lengths (pixel aspect) on the way"
+        )
+    off_centre = np.abs(K[:, :2, 2] / (width, height) - 0.5)
     if (off_centre > MAX_LENS_SHIFT).any():
         raise RenderJobError(f"a principal point lies over {MAX_LENS_SHIFT:.0f} image sizes from the centre")
     R = pose[:, :3, :3]

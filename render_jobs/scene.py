@@ -27,8 +27,8 @@ HdriName = Literal["city", "courtyard", "forest", "interior", "night", "studio",
 
 HDRI_NAMES: tuple[str, ...] = get_args(HdriName)
 
-MAX_TRACK_ID = 65535
-"""The largest value of a 16-bit mask."""
+MAX_TRACK_ID = 32767
+"""The largest object index that Blender keeps."""
 
 
 class SceneValue(BaseModel):
@@ -176,7 +176,7 @@ class Mesh:
         if not self.name or not all(c.isalnum() or c in "-_." for c in self.name):
             self._fail("the name may hold letters, digits, '-', '_' and '.' only")
         if not 0 <= self.track_id <= MAX_TRACK_ID:
-            self._fail(f"track_id {self.track_id} is outside 0..{MAX_TRACK_ID}, what a 16-bit mask holds")
+            self._fail(f"track_id {self.track_id} is outside 0..{MAX_TRACK_ID}")
         if not 0 <= self.subdivision <= 4:
             self._fail(f"subdivision {self.subdivision} is outside 0..4")
         if self.placements is not None and self.placements.shape[1:] != (4, 4):

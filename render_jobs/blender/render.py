@@ -1,0 +1,198 @@
+"""A job becomes a Blender scene, and the scene becomes frames.
+
+Two view layers are rendered in one go: ``beauty`` makes the picture; ``labels`` takes one sample at the
+centre of every pixel, so that mask, depth, normal and flow tell of one and the same surface, without
+antialiasing or blur. The second layer costs about as much as one more sample a pixel.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, NoReturn
+
+import bpy
+
+from render_jobs.blender.camera import add_camera
+from render_jobs.blender.compat import write_multilayer_exr
+from render_jobs.blender.cycles import set_up_cycles
+from render_jobs.blender.geometry import add_mesh
+from render_jobs.blender.lights import add_light, set_environment
+from render_jobs.blender.materials import build_material
+from render_jobs.devices import DeviceChoice
+from render_jobs.job import RenderJob
+from render_jobs.passes import LABEL_PASSES
+
+BEAUTY_LAYER = "beauty"
+LABEL_LAYER = "labels"
+VIEW_TRANSFORM = {"standard": ("Standard", "None"), "agx": ("AgX", "AgX - Medium High Contrast")}
+JPEG_QUALITY = 95
+PNG_COMPRESSION = 30
+"""Percent; more takes far longer than it saves."""
+ALPHA_SEEN = 0.5
+"""A surface counts as seen, for the labels, from this opacity on."""
+
+
+@dataclass(frozen=True)
+class RawFrame:
+    """What Blender left for a frame.
+
+    Attributes:
+        frame: its number.
+        rgb: the encoded picture, or None where the job wants none.
+        labels: a multilayer EXR, or None where the job wants no label.
+    """
+
+    frame: int
+    rgb: Path | None
+    labels: Path | None
+
+
+def build_scene(job: RenderJob, scratch: Path, choice: DeviceChoice, threads: int) -> str:
+    """Replace whatever Blender holds by the job's scene.
+
+    Args:
+        job: the job.
+        scratch: a folder for vertex caches, kept until the render has ended.
+        choice: the device.
+        threads: CPU threads; 0 takes all cores.
+
+    Returns:
+        the devices that render, for people to read.
+
+    Raises:
+        RenderJobError: a texture cannot be read.
+        EngineError: a GPU was insisted on and there is none.
+    """
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    devices = set_up_cycles(job, choice, threads)
+    materials: dict[str, Any] = {}
+    for mesh in job.meshes:
+        key = mesh.material.model_dump_json()
+        if key not in materials:
+            materials[key] = build_material(mesh.material)
+        add_mesh(mesh, materials[key], scratch)
+    for index, light in enumerate(job.lights):
+        add_light(light, f"{light.kind}.{index}")
+    set_environment(job.environment)
+    add_camera(job)
+    _set_layers(job)
+    _set_output(job)
+    return devices
+
+
+def render_frames(
+    job: RenderJob,
+    frames: Iterable[int],
+    scratch: Path,
+    on_frame: Callable[[RawFrame], None],
+    abort: Callable[[BaseException], NoReturn],
+) -> None:
+    """Render frames of the built scene; consecutive ones in one animation render.
+
+    Args:
+        job: the job the scene was built from.
+        frames: ascending frame numbers.
+        scratch: where raw frames go.
+        on_frame: called in between frames, while Blender waits; it owns the files it is given.
+        abort: called on an error between frames. Blender would print the exception and go on with the next
+            frame, so this must end the process.
+    """
+    scene: Any = bpy.context.scene
+    wants_rgb = "rgb" in job.passes
+    wants_labels = any(name in LABEL_PASSES for name in job.passes)
+    scene.render.filepath = str(scratch / "raw_")
+
+    def picture_path(frame: int) -> Path:
+        return scratch / f"rgb_{frame:06d}.{job.image_format}"
+
+    def keep_picture(rendered: Any, *_: object) -> None:
+        try:
+            if wants_rgb:
+                _save_picture(rendered, picture_path(rendered.frame_current), job.image_format)
+        except BaseException as error:
+            abort(error)
+
+    def finish(rendered: Any, *_: object) -> None:
+        try:
+            frame = rendered.frame_current
+            raw = Path(rendered.render.frame_path(frame=frame))
+            if not wants_labels:
+                raw.unlink()
+            on_frame(
+                RawFrame(frame, picture_path(frame) if wants_rgb else None, raw if wants_labels else None)
+            )
+        except BaseException as error:
+            abort(error)
+
+    bpy.app.handlers.render_post.append(keep_picture)
+    bpy.app.handlers.render_write.append(finish)
+    try:
+        for start, stop in _runs(frames):
+            scene.frame_start, scene.frame_end = start, stop - 1
+            bpy.ops.render.render(animation=True)
+    finally:
+        bpy.app.handlers.render_post.remove(keep_picture)
+        bpy.app.handlers.render_write.remove(finish)
+
+
+def _runs(frames: Iterable[int]) -> list[tuple[int, int]]:
+    """Ascending numbers as half-open ranges."""
+    runs: list[tuple[int, int]] = []
+    for frame in frames:
+        if runs and runs[-1][1] == frame:
+            runs[-1] = (runs[-1][0], frame + 1)
+        else:
+            runs.append((frame, frame + 1))
+    return runs
+
+
+def _set_layers(job: RenderJob) -> None:
+    scene: Any = bpy.context.scene
+    beauty = scene.view_layers[0]
+    beauty.name = BEAUTY_LAYER
+    labels = scene.view_layers.new(LABEL_LAYER)
+    labels.samples = 1
+    labels.cycles.use_denoising = False
+    labels.use_motion_blur = False
+    labels.use_pass_combined = False
+    labels.pass_alpha_threshold = ALPHA_SEEN
+    labels.use_pass_z = (
+        "depth" in job.passes or "flow" in job.passes
+    )  # flow needs to know where there is no hit
+    labels.use_pass_object_index = "mask" in job.passes
+    labels.use_pass_normal = "normal" in job.passes
+    labels.use_pass_vector = "flow" in job.passes
+    beauty.use = "rgb" in job.passes
+    labels.use = any(name in LABEL_PASSES for name in job.passes)
+
+
+def _set_output(job: RenderJob) -> None:
+    scene: Any = bpy.context.scene
+    scene.render.use_compositing = False
+    scene.render.use_sequencer = False
+    scene.render.dither_intensity = 0.0
+    scene.render.use_motion_blur = job.shutter > 0
+    scene.render.motion_blur_shutter = job.shutter
+    scene.render.motion_blur_position = "CENTER"
+    scene.render.use_file_extension = True
+    scene.display_settings.display_device = "sRGB"
+    scene.view_settings.view_transform, scene.view_settings.look = VIEW_TRANSFORM[job.tone]
+    scene.view_settings.exposure = job.exposure
+    write_multilayer_exr(scene.render.image_settings)
+
+
+def _save_picture(scene: Any, path: Path, image_format: str) -> None:
+    """Encode the frame just rendered, colour managed, and leave the settings as they were: for raw layers."""
+    image = scene.render.image_settings
+    if image_format == "jpg":
+        image.file_format = "JPEG"
+        image.quality = JPEG_QUALITY
+    else:
+        image.file_format = "PNG"
+        image.color_depth = "8"
+        image.compression = PNG_COMPRESSION
+    image.color_mode = "RGB"
+    bpy.data.images["Render Result"].save_render(str(path), scene=scene)
+    write_multilayer_exr(image)

@@ -1,0 +1,174 @@
+"""One job, one process: ``python -m render_jobs.worker JOB_FOLDER``.
+
+Prints one JSON object a line to stdout: ``start``, ``frame``, ``done`` or ``error``. All else that Blender
+and Python print goes to ``render.log`` in the job folder. Frames already there are not rendered again.
+The exit status is 0 when every frame is there, :data:`BAD_JOB` or :data:`NO_ENGINE` where another try cannot
+help, else 1.
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import ctypes
+import importlib
+import json
+import os
+import shutil
+import signal
+import sys
+import threading
+import time
+import traceback
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NoReturn, TextIO
+
+from render_jobs.devices import parse_device
+from render_jobs.errors import EngineError, RenderJobError
+from render_jobs.images import is_complete
+from render_jobs.job import RenderJob
+from render_jobs.storage import OUTPUT_FOLDER
+
+ENGINES = {"cycles": "render_jobs.blender.engine"}
+"""The module behind each engine; imported only when used."""
+
+LOG_FILE = "render.log"
+FAILED, BAD_JOB, NO_ENGINE = 1, 2, 3
+PR_SET_PDEATHSIG = 1
+PARENT_POLL_S = 1.0
+
+
+class Reporter:
+    """Speaks to the parent: one JSON object a line, on the stdout that the process was started with."""
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+        self._lock = threading.Lock()
+
+    def send(self, event: str, **values: object) -> None:
+        """Send one event. A parent that no longer listens is no error here."""
+        with self._lock, contextlib.suppress(BrokenPipeError):
+            self._stream.write(json.dumps({"event": event, **values}) + "\n")
+            self._stream.flush()
+
+    def abort(self, error: BaseException) -> NoReturn:
+        """Report the error and end the process at once.
+
+        There is no orderly way out: Blender swallows exceptions raised in its handlers, and taking its module
+        down at the interpreter's exit can hang.
+        """
+        traceback.print_exception(error)
+        code = (
+            NO_ENGINE
+            if isinstance(error, EngineError)
+            else BAD_JOB
+            if isinstance(error, RenderJobError)
+            else FAILED
+        )
+        message = str(error).strip() or type(error).__name__
+        self.send("error", message=" ".join(message.split()))
+        leave(code)
+
+
+def leave(code: int) -> NoReturn:
+    """End the process without taking down the interpreter."""
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(code)
+
+
+def main(arguments: Sequence[str] | None = None) -> NoReturn:
+    """Render the frames of a job that are missing."""
+    options = _parse(arguments)
+    if options.parent:
+        _end_with(options.parent)
+    reporter = Reporter(_take_over_output(options.job))
+    try:
+        _work(options, reporter)
+    except BaseException as error:
+        reporter.abort(error)
+    reporter.send("done")
+    leave(0)
+
+
+def _parse(arguments: Sequence[str] | None) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(
+        prog="python -m render_jobs.worker", description=(__doc__ or "").split("\n")[0]
+    )
+    parser.add_argument("job", type=Path, help="the job folder")
+    parser.add_argument("--engine", choices=sorted(ENGINES), default="cycles")
+    parser.add_argument("--device", default="auto", help="auto, cpu, gpu, or an interface as cuda:0")
+    parser.add_argument("--threads", type=int, default=0, help="CPU threads; 0 takes all cores")
+    parser.add_argument("--frames", type=_frame_range, help="FIRST:END, half open; default all")
+    parser.add_argument("--parent", type=int, default=0, help="end when this process is no longer the parent")
+    return parser.parse_args(arguments)
+
+
+def _frame_range(text: str) -> range:
+    first, _, end = text.partition(":")
+    return range(int(first), int(end))
+
+
+def _work(options: argparse.Namespace, reporter: Reporter) -> None:
+    job = RenderJob.load(options.job)
+    device = parse_device(options.device)
+    out = options.job / OUTPUT_FOLDER
+    wanted = options.frames or range(job.num_frames)
+    missing = [
+        frame
+        for frame in wanted
+        if frame < job.num_frames and not is_complete(out, frame, job.passes, job.image_format)
+    ]
+    if not missing:
+        return
+    out.mkdir(exist_ok=True)
+    scratch = options.job / f"scratch-{os.getpid()}"
+    scratch.mkdir()
+    try:
+        importlib.import_module(ENGINES[options.engine]).render(
+            job=job,
+            frames=missing,
+            out=out,
+            scratch=scratch,
+            device=device,
+            threads=options.threads,
+            on_start=lambda devices: reporter.send("start", devices=devices, frames=len(missing)),
+            on_frame=lambda frame, seconds: reporter.send("frame", frame=frame, seconds=round(seconds, 4)),
+            abort=reporter.abort,
+        )
+    finally:
+        shutil.rmtree(scratch, ignore_errors=True)
+    absent = [frame for frame in missing if not is_complete(out, frame, job.passes, job.image_format)]
+    if absent:
+        raise RuntimeError(f"the engine ended without frame {absent[0]} ({len(absent)} in all)")
+
+
+def _take_over_output(folder: Path) -> TextIO:
+    """Send everything printed from now on, C code included, to the log; return what was stdout."""
+    stream = os.fdopen(os.dup(1), "w", encoding="utf-8")
+    if folder.is_dir():
+        log = os.open(folder / LOG_FILE, os.O_WRONLY | os.O_APPEND | os.O_CREAT, 0o666)
+        os.dup2(log, 1)
+        os.dup2(log, 2)
+        os.close(log)
+    else:
+        os.dup2(2, 1)
+    return stream
+
+
+def _end_with(parent: int) -> None:
+    """Die when the parent does: no orphan keeps a machine busy."""
+    if sys.platform == "linux":  # the kernel does it at once, even while native code holds the interpreter
+        ctypes.CDLL(None, use_errno=True).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+
+    def watch() -> None:
+        while os.getppid() == parent:
+            time.sleep(PARENT_POLL_S)
+        os._exit(FAILED)
+
+    threading.Thread(target=watch, daemon=True, name="parent-watch").start()
+
+
+if __name__ == "__main__":
+    main()
