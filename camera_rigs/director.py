@@ -1,24 +1,30 @@
-"""The director: which shot when, joined into one camera path without a jump."""
+"""The director: which shot when, by the rule of the paper; and `direct`, which plans a whole clip.
+
+Static motion (the longest edge of the box of the anchor's path is below λ_bbox) or interactive motion is
+filmed with horizontal and vertical arcs with random push and pull; long-distance motion with tracking while
+the facing has turned less than λ_angle since the last keyframe, else with a pan.
+"""
 
 from collections.abc import Sequence
 
 import numpy as np
 
+from camera_rigs.drafting import Drafting
+from camera_rigs.errors import PlanError
+from camera_rigs.joins import compose, cut, transition_half
 from camera_rigs.lens import Lens
-from camera_rigs.path import path_from_rig
+from camera_rigs.path import aimed_path
 from camera_rigs.plan import Plan
-from camera_rigs.shots.arc import plan_arc
-from camera_rigs.shots.base import SCALES, Move, Scene, Shot, Span, View
-from camera_rigs.shots.tracking import plan_tracking
-from camera_rigs.smoothing import smootherstep
-from camera_rigs.spherical import Array
+from camera_rigs.rules import Evidence, Limits, judge
+from camera_rigs.scene import Scene, Span
+from camera_rigs.shake import Shake, shake_rand, shaken
+from camera_rigs.shots.catalogue import GROUPS, KINDS, resolve_shots
+from camera_rigs.style import REPEAT, Style
 from camera_rigs.subject import SubjectTrack
 from camera_rigs.world import World
 
-LAMBDA_BBOX = 2.0
-TRANSITION_SECONDS = 1.0
-MIN_SHOT_SECONDS = 1.5
-MAX_SHOT_SECONDS = 4.0
+ATTEMPTS = 10
+"""Openings that are tried before a plan with breaches is returned."""
 
 
 def direct(
@@ -27,66 +33,140 @@ def direct(
     world: World,
     shots: str | Sequence[str],
     rng: np.random.Generator,
+    *,
+    style: Style | None = None,
+    limits: Limits | None = None,
+    shake: Shake | None = None,
+    interactive: bool | None = None,
 ) -> Plan:
-    """Plan a camera for the people."""
-    scene = Scene(subject, lens, world)
-    scale = SCALES["full" if rng.random() < 0.5 else "medium"]
-    theta = np.radians(rng.uniform(70.0, 95.0))
-    view = View(
-        scale,
-        scene.radius(0, rng.uniform(scale.frac_min, scale.frac_max), theta, scale),
-        theta,
-        np.radians(rng.uniform(-60.0, 60.0)),
-        lens.focal,
+    """Plan the camera of a whole clip: several movements joined into one path, judged and mended.
+
+    Args:
+        subject: the people; planned for to the millimetre.
+        lens: the lens at the first frame; only a dolly zoom changes it.
+        world: the surroundings.
+        shots: "auto" (the movements of the paper), "all", or names of shots, see `resolve_shots`.
+        rng: where all choices come from; equal generators give equal plans.
+        style: λ, weights and ranges of the choices.
+        limits: what the rules allow.
+        shake: adds the shake of a hand-held camera.
+        interactive: whether the people act on each other; by default whether there are several.
+
+    Returns:
+        The plan. `Plan.findings` is empty unless no plan without a breach was found.
+
+    Raises:
+        PlanError: a shot is unknown, or none of those asked for can apply to the motion.
+    """
+    style, limits = style or Style(), limits or Limits()
+    scene = Scene(subject.rounded(), lens, world)
+    cast, refusals = _cast(scene, shots)
+    director = Director(scene, style, cast, subject.num_people > 1 if interactive is None else interactive)
+    best: Plan | None = None
+    for attempt in range(ATTEMPTS):
+        spans = cut(subject.num_frames, subject.fps, rng)
+        drafting = Drafting(rng, scene, director, limits, shake, attempt, last_chance=attempt == ATTEMPTS - 1)
+        if not drafting.draft_all(spans):
+            continue
+        plan = _finish(drafting, spans, refusals)
+        if best is None or len(plan.findings) < len(best.findings):
+            best = plan
+        if plan.ok:
+            break
+    if best is None:
+        raise PlanError("no camera was found: give the camera more room or allow more shots")
+    return best
+
+
+def _cast(scene: Scene, shots: str | Sequence[str]) -> tuple[tuple[str, ...], dict[str, str]]:
+    """The kinds that can apply to the scene, and the reasons why the others asked for by name cannot."""
+    names = resolve_shots(shots)
+    reasons = {name: KINDS[name].refusal(scene) for name in names}
+    cast = tuple(name for name in names if reasons[name] is None)
+    if not cast:
+        told = "; ".join(reason for reason in reasons.values() if reason)
+        raise PlanError(f"none of the shots asked for can apply: {told}")
+    by_group = isinstance(shots, str) and shots in GROUPS
+    return cast, {} if by_group else {name: reason for name, reason in reasons.items() if reason}
+
+
+def _finish(drafting: Drafting, spans: list[Span], refusals: dict[str, str]) -> Plan:
+    """Join the drafts, shake the camera, judge the whole."""
+    scene, drafts, shake = drafting.scene, drafting.drafts, drafting.shake
+    joints = [span.end for span in spans[:-1]]
+    moves = [draft.move for draft in drafts]
+    move = compose(moves, joints, 0, scene.last, transition_half(scene.fps))
+    path = aimed_path(move.eye, move.target, move.focal, move.roll, scene.lens, scene.fps)
+    if shake is not None:
+        path = shaken(path, *shake_rand(drafting.rng, shake, path.num_frames, path.fps))
+    shots = tuple(draft.shot for draft in drafts)
+    findings = judge(Evidence(path, scene.subject, scene.world, shots, drafting.limits, shake))
+    return Plan(
+        path,
+        shots,
+        scene.subject,
+        scene.world,
+        drafting.limits,
+        shake,
+        findings,
+        tuple(drafting.mends),
+        refusals,
     )
-    spans = spans_of(subject.num_frames, subject.fps, rng)
-    travel = np.ptp(subject.smooth_pelvis, axis=0).max()
-    planned: list[Shot] = []
-    for span in spans:
-        if travel >= LAMBDA_BBOX and subject.num_people == 1:
-            shot = plan_tracking(scene, span, view)
-        elif len(planned) % 2 == 0:
-            degrees = rng.choice([-1.0, 1.0]) * rng.uniform(8.0, 15.0) * span.length / scene.fps
-            shot = plan_arc(scene, span, view, delta_phi=float(np.radians(degrees)))
-        else:
-            goal = np.radians(rng.uniform(60.0, 95.0))
-            shot = plan_arc(scene, span, view, delta_theta=float(goal - view.theta), kind="arc-vertical")
-        planned.append(shot)
-        eye = shot.move.eye[span.end - span.lo]
-        view = View.from_location(scene, span.end, eye, view.scale, view.focal)
-    eye, target, focal, roll = compose([s.move for s in planned], [s.end for s in planned[:-1]], subject)
-    return Plan(path_from_rig(eye, target, focal, roll, lens, subject.fps), tuple(planned))
 
 
-def spans_of(num_frames: int, fps: float, rng: np.random.Generator) -> list[Span]:
-    """Cut the frames into shots of MIN_SHOT_SECONDS to MAX_SHOT_SECONDS."""
-    bounds = [0]
-    while (num_frames - 1 - bounds[-1]) / fps >= 2.0 * MIN_SHOT_SECONDS:
-        left = (num_frames - 1 - bounds[-1]) / fps
-        seconds = rng.uniform(MIN_SHOT_SECONDS, min(MAX_SHOT_SECONDS, left - MIN_SHOT_SECONDS))
-        bounds.append(bounds[-1] + max(1, round(seconds * fps)))
-    bounds.append(num_frames - 1)
-    half = round(0.5 * TRANSITION_SECONDS * fps)
-    return [
-        Span(a, b, max(a - half, 0), min(b + half, num_frames - 1))
-        for a, b in zip(bounds[:-1], bounds[1:], strict=True)
-    ]
+class Director:
+    """Chooses the shot for a span of frames.
+
+    Args:
+        scene: the scene.
+        style: λ and weights.
+        cast: kinds that may be used, first choice of the user.
+        interactive: whether the people act on each other.
+    """
+
+    def __init__(self, scene: Scene, style: Style, cast: Sequence[str], interactive: bool) -> None:
+        self.scene, self.style, self.cast, self.interactive = scene, style, tuple(cast), interactive
+
+    def situation(self, span: Span) -> str:
+        """What the paper's rule says of the motion in a span: "static", "travelling" or "turning"."""
+        if self.interactive or self.travel(span) < self.style.lambda_bbox:
+            return "static"
+        return "travelling" if self.turned(span) < self.style.lambda_angle else "turning"
+
+    def travel(self, span: Span) -> float:
+        """The longest edge [m] of the box of the anchor's path over the span and the time around it."""
+        subject = self.scene.subject
+        margin = max(0, round(0.5 * (self.style.window_seconds * subject.fps - span.length)))
+        path = subject.smooth_pelvis[max(span.start - margin, 0) : span.end + margin + 1]
+        return float(np.ptp(path, axis=0).max())
+
+    def turned(self, span: Span) -> float:
+        """How far [rad] the facing turns over the span from where it is at the keyframe that begins it."""
+        azimuth = self.scene.subject.azimuth[span.start : span.end + 1]
+        return float(np.abs(azimuth - azimuth[0]).max())
+
+    def preferences(self, rng: np.random.Generator, span: Span, previous: str | None) -> list[str]:
+        """The kinds to try for a span, best first.
+
+        The kinds that the rule names for the situation come first, drawn by their weights; then the others
+        of the cast; and last, as substitutes, the movements of the paper that nobody asked for.
+        """
+        weights = self.style.weights[self.situation(span)]
+        fitting = {
+            name: weights[name] * (REPEAT if name == previous else 1.0)
+            for name in self.cast
+            if name in weights
+        }
+        first = _draw_order(rng, fitting)
+        others = _draw_order(rng, {name: 1.0 for name in self.cast if name not in fitting})
+        substitutes = [name for name in ("arc-horizontal", "push-pull", "tracking") if name not in self.cast]
+        return [*first, *others, *substitutes]
 
 
-def compose(moves: list[Move], joints: list[int], subject: SubjectTrack) -> tuple[Array, Array, Array, Array]:
-    """Blend overlapping moves: eye, target (T, 3), focal, roll (T,)."""
-    n = subject.num_frames
-    half = 0.5 * TRANSITION_SECONDS * subject.fps
-    eye, target, focal, roll = np.zeros((n, 3)), np.zeros((n, 3)), np.zeros(n), np.zeros(n)
-    for i, move in enumerate(moves):
-        frames = np.arange(move.lo, move.lo + len(move.eye))
-        weight = np.ones(len(frames))
-        if i > 0:
-            weight *= smootherstep((frames - joints[i - 1] + half) / (2 * half))
-        if i < len(joints):
-            weight *= 1.0 - smootherstep((frames - joints[i] + half) / (2 * half))
-        eye[frames] += weight[:, None] * move.eye
-        target[frames] += weight[:, None] * move.target
-        focal[frames] += weight * move.focal
-        roll[frames] += weight * move.roll
-    return eye, target, focal, roll
+def _draw_order(rng: np.random.Generator, weights: dict[str, float]) -> list[str]:
+    """The names in an order drawn without replacement, the heavy ones earlier."""
+    if not weights:
+        return []
+    keys = rng.exponential(size=len(weights)) / np.array(list(weights.values()))
+    names = list(weights)
+    return [names[index] for index in np.argsort(keys)]

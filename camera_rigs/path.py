@@ -12,14 +12,13 @@ from camera_rigs.spherical import Array
 
 @dataclass(frozen=True)
 class CameraPath:
-    """Intrinsics and pose per frame, OpenCV axes (x right, y down, z forward), world z up, metres.
+    """Intrinsics and pose per frame: OpenCV axes (x right, y down, z forward), world z up, metres.
 
     Attributes:
         K: intrinsics (T, 3, 3) [px].
         T_world_camera: camera to world (T, 4, 4).
         fps: frames per second.
-        width: image width [px].
-        height: image height [px].
+        width, height: image size [px].
     """
 
     K: Array
@@ -51,12 +50,17 @@ class CameraPath:
         return self.T_world_camera[:, :3, 2]
 
     @property
-    def T_camera_world(self) -> Array:
+    def focal(self) -> Array:
+        """Focal length (T,) [px]."""
+        return self.K[:, 1, 1]
+
+    @property
+    def T_camera_world(self) -> Array:  # noqa: N802 - the name of the array in camera.npz
         """World to camera (T, 4, 4), the exact rigid inverse."""
-        R_t = self.T_world_camera[:, :3, :3].transpose(0, 2, 1)
+        R_camera_world = self.T_world_camera[:, :3, :3].transpose(0, 2, 1)
         inverse = np.zeros_like(self.T_world_camera)
-        inverse[:, :3, :3] = R_t
-        inverse[:, :3, 3] = -np.einsum("tij,tj->ti", R_t, self.location)
+        inverse[:, :3, :3] = R_camera_world
+        inverse[:, :3, 3] = -np.einsum("tij,tj->ti", R_camera_world, self.location)
         inverse[:, 3, 3] = 1.0
         return inverse
 
@@ -64,22 +68,23 @@ class CameraPath:
         """Project points (T, …, 3) [m], one set per frame.
 
         Returns:
-            pixels (T, …, 2), pixel (0, 0) covering [0, 1)×[0, 1), and planar depth (T, …) [m]; points at or behind
-            the camera (depth ≤ 0) have pixels NaN.
+            Pixels (T, …, 2), pixel (0, 0) covering [0, 1)×[0, 1), and planar depth (T, …) [m]. Points at or
+            behind the camera (depth ≤ 0) have NaN for pixels.
         """
         points = np.asarray(points_world, float)
-        flat = points.reshape(len(points), -1, 3) - self.location[:, None]
-        camera = np.einsum("tni,tij->tnj", flat, self.T_world_camera[:, :3, :3])
+        offset = points.reshape(len(points), -1, 3) - self.location[:, None]
+        camera = np.einsum("tni,tij->tnj", offset, self.T_world_camera[:, :3, :3])
         depth = camera[..., 2]
-        safe = np.where(depth > 0.0, depth, np.nan)
-        homogeneous = np.einsum("tij,tnj->tni", self.K[:, :2], camera / safe[..., None])
-        return homogeneous.reshape(*points.shape[:-1], 2), depth.reshape(points.shape[:-1])
+        ahead = np.where(depth > 0.0, depth, np.nan)
+        pixels = np.einsum("tij,tnj->tni", self.K[:, :2], camera / ahead[..., None])
+        return pixels.reshape(*points.shape[:-1], 2), depth.reshape(points.shape[:-1])
 
 
 def look_at(eye: ArrayLike, target: ArrayLike, roll: ArrayLike = 0.0) -> Array:
-    """Camera to world (T, 4, 4) of cameras at `eye` (T, 3) that look at `target` (T, 3) with a level horizon.
+    """Camera to world (T, 4, 4) of cameras at `eye` (T, 3) that look at `target` (T, 3), the horizon level.
 
-    `roll` [rad] turns the camera about its viewing axis, clockwise as the camera operator sees the camera turn.
+    `roll` [rad] turns the camera about its viewing axis: positive turns x towards y, clockwise for the
+    operator.
     """
     eye, target = np.asarray(eye, float), np.asarray(target, float)
     forward = target - eye
@@ -97,6 +102,7 @@ def look_at(eye: ArrayLike, target: ArrayLike, roll: ArrayLike = 0.0) -> Array:
     return pose
 
 
-def path_from_rig(eye: Array, target: Array, focal: Array, roll: Array, lens: Lens, fps: float) -> CameraPath:
-    """The `CameraPath` of locations, look-at points (T, 3), focal lengths (T,) [px] and rolls (T,) [rad]."""
-    return CameraPath(lens.K(focal), look_at(eye, target, roll), fps, lens.width, lens.height)
+def aimed_path(eye: Array, target: Array, focal: Array, roll: Array, lens: Lens, fps: float) -> CameraPath:
+    """The path of cameras at `eye` that look at `target` (T, 3), with focal lengths [px] and rolls [rad]
+    (T,)."""
+    return CameraPath(lens.intrinsics(focal), look_at(eye, target, roll), fps, lens.width, lens.height)

@@ -1,6 +1,8 @@
 """What stands around the people: the ground, boxes in the way, and the walls of a room."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -91,7 +93,7 @@ class World:
         return gap
 
     def obstacle_distance(self, points: ArrayLike) -> Array:
-        """Distance (…) [m] of points (…, 3) from the nearest obstacle, negative inside; infinite without any."""
+        """Signed distance (…) [m] of points (…, 3) from the nearest obstacle; infinite without any."""
         points = np.asarray(points, float)
         nearest = np.full(points.shape[:-1], np.inf)
         for obstacle in self.obstacles:
@@ -105,3 +107,26 @@ class World:
         for obstacle in self.obstacles:
             hidden |= obstacle.hides(eye, target)
         return hidden
+
+    def to_json(self) -> dict[str, Any]:
+        """The surroundings as plain numbers, lists and dictionaries."""
+        return asdict(self)
+
+    @classmethod
+    def from_json(cls, document: Mapping[str, Any]) -> "World":
+        """The surroundings of `to_json`."""
+        try:
+            obstacles = tuple(
+                Obstacle(_vector(o["center"]), _vector(o["size"]), float(o["yaw"]), str(o["name"]))
+                for o in document["obstacles"]
+            )
+            bounds = document["bounds"]
+            corners = None if bounds is None else (_vector(bounds[0]), _vector(bounds[1]))
+            return cls(float(document["ground_z"]), obstacles, corners)
+        except (KeyError, TypeError, ValueError) as error:
+            raise PlanError(f"world: {error!r}: an entry is missing or of a wrong type") from error
+
+
+def _vector(values: Any) -> Vector:
+    x, y, z = values
+    return float(x), float(y), float(z)

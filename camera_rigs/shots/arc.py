@@ -1,18 +1,29 @@
-"""Arc: the camera circles the people, keyframes equally spaced in φ (horizontal) or in θ (vertical).
+"""Arc: the camera circles the people; keyframes equally spaced in φ (horizontal) or in θ (vertical).
 
-The speed is set by Δφ or Δθ. The facing is that of the first frame: an arc is drawn around where the person looked,
-not dragged along by every turn of a dance; its centre travels with the anchor.
+The speed is set by Δφ or Δθ. φ_facing is the facing at the first frame: an arc is drawn around where the
+person looked and not dragged along by every turn of a dance. Its centre travels with the anchor.
 """
 
 from collections.abc import Sequence
 
 import numpy as np
 
-from camera_rigs.shots.base import Keyframe, Move, Scene, Shot, Span, View, at, keyframe, through
+from camera_rigs.errors import PlanError
+from camera_rigs.scene import THETA_MIN, Scene, Span, View
+from camera_rigs.shot import Draft, Keyframe, Move, Parameter, Shot, keyframe_at
+from camera_rigs.shots.pace import ANGULAR_SPEED, RIG_SPEED, Range, draw, random_fracs
+from camera_rigs.smoothing import at, through
 from camera_rigs.spherical import Array, spherical_to_cartesian
 
 KEYFRAMES_PER_SECOND = 2.0
-"""Keyframes of an arc: the smooth path between them is a straight line in φ or θ, so the number only labels it."""
+"""Keyframes of an arc. The path between them is even in angle, so that their number only labels it."""
+
+ANGLES: dict[str, Range] = {
+    "high": (np.radians(45.0), np.radians(70.0)),
+    "eye": (np.radians(80.0), np.radians(92.0)),
+    "low": (np.radians(96.0), np.radians(106.0)),
+}
+"""Polar angles [rad] of high, eye-level and low angles, between which vertical arcs pass."""
 
 
 def plan_arc(
@@ -24,62 +35,122 @@ def plan_arc(
     delta_theta: float = 0.0,
     fracs: Sequence[float] = (),
     kind: str = "arc-horizontal",
-) -> Shot:
+) -> Draft:
     """An arc from `view` by `delta_phi` or `delta_theta` [rad] over the span.
 
     Args:
         scene, span, view: the scene, the frames and the view at the first frame.
         delta_phi: angle of the whole horizontal arc, signed.
         delta_theta: angle of the whole vertical arc, signed; negative rises.
-        fracs: fractions of the view to reach at times equally spaced after the first frame: push and pull while
-            the arc goes on. Empty keeps the distance.
+        fracs: fractions of the view reached at times equally spaced after the first frame, a push and pull
+            along the arc. Without any the distance is kept.
         kind: name under which the shot is listed.
+
+    Raises:
+        PlanError: both angles are given; keyframes are equally spaced in one of the two.
     """
-    count = max(2, round(span.length / scene.fps * KEYFRAMES_PER_SECOND) + 1)
-    times = span.start + span.length * np.linspace(0.0, 1.0, count)
-    r_times, radii = _radii(scene, span, view, fracs, delta_theta)
+    if delta_phi and delta_theta:
+        raise PlanError("an arc is horizontal or vertical: give delta_phi or delta_theta, not both")
     heading = float(at(scene.subject.azimuth, span.start))
+    radius_times, radii, reached = _radii(scene, span, view, fracs, delta_theta)
 
-    def orbit(frames: Array) -> tuple[Array, Array]:
-        progress = (frames - span.start) / span.length
-        theta, phi = view.theta + delta_theta * progress, view.phi + heading + delta_phi * progress
-        anchor = at(scene.subject.anchor(view.scale.anchor), frames)
-        return anchor + spherical_to_cartesian(through(r_times, radii, frames), theta, phi), anchor
-
-    eyes, targets = orbit(times)
-    asked = dict(zip(r_times[1:], fracs, strict=True))
-    keyframes = _keyframes(scene, view, times, eyes, targets, heading)
-    extra_times = np.array(sorted(asked))
-    if len(extra_times):
-        eyes, targets = orbit(extra_times)
-        keyframes += tuple(
-            keyframe(scene, view.scale, t, e, a, view.focal, heading=heading, frac=asked[t])
-            for t, e, a in zip(extra_times, eyes, targets, strict=True)
+    def place(frames: Array) -> Array:
+        progress = span.progress(frames)
+        offset = spherical_to_cartesian(
+            through(radius_times, radii, frames),
+            view.theta + delta_theta * progress,
+            view.phi + heading + delta_phi * progress,
         )
-        keyframes = tuple(sorted(keyframes, key=lambda k: k.frame))
-    eye, target = orbit(span.frames)
-    parameters = {"delta_phi": delta_phi, "delta_theta": delta_theta, "radius": view.r, "keyframes": count}
-    move = Move(span.lo, eye, target, np.full(len(eye), view.focal), np.zeros(len(eye)))
-    return Shot(kind, view.scale.name, span.start, span.end, parameters, keyframes, move)
+        return scene.anchor(view.scale, frames) + offset
+
+    count = max(2, round(span.length / scene.fps * KEYFRAMES_PER_SECOND) + 1)
+    times = span.times(np.linspace(0.0, 1.0, count))
+    keyframes = [_keyframe(scene, view, t, place(t), heading) for t in times]
+    if len(fracs):
+        ending = keyframes.pop()
+        keyframes.append(
+            _keyframe(scene, view, ending.frame, np.array(ending.location), heading, reached[-1])
+        )
+    parameters: dict[str, Parameter] = {
+        "delta_phi": delta_phi,
+        "delta_theta": delta_theta,
+        "radius": view.r,
+        "fracs": " ".join(f"{frac:.3f}" for frac in reached),
+    }
+    move = Move.level(span, place(span.frames), scene.anchor(view.scale, span.frames), view.focal)
+    return Draft(Shot(kind, view.scale.name, span.start, span.end, parameters, tuple(keyframes)), move)
+
+
+def _keyframe(
+    scene: Scene, view: View, time: float, location: Array, heading: float, frac: float | None = None
+) -> Keyframe:
+    return keyframe_at(scene, view.scale, time, location, view.focal, heading=heading, frac=frac)
 
 
 def _radii(
     scene: Scene, span: Span, view: View, fracs: Sequence[float], delta_theta: float
-) -> tuple[Array, Array]:
-    """Times and radii (n,) of the push and pull along an arc."""
-    shares = np.linspace(0.0, 1.0, len(fracs) + 1)
-    times = span.start + span.length * shares
-    radii = [view.r] + [
-        scene.radius(t, frac, view.theta + delta_theta * share, view.scale, view.focal)
-        for t, frac, share in zip(times[1:], fracs, shares[1:], strict=True)
-    ]
-    return times, np.array(radii)
+) -> tuple[Array, Array, list[float]]:
+    """Times, radii (n + 1,) and fractions (n,) of the push and pull along an arc."""
+    times = span.start + span.length * np.linspace(0.0, 1.0, len(fracs) + 1)
+    radii, reached = [view.r], []
+    for time, frac in zip(times[1:], fracs, strict=True):
+        theta = view.theta + delta_theta * float(span.progress(np.asarray(time)))
+        r, achieved = scene.framing(time, frac, theta, view.scale, view.focal)
+        radii.append(r)
+        reached.append(achieved)
+    return times, np.array(radii), reached
 
 
-def _keyframes(
-    scene: Scene, view: View, times: Array, eyes: Array, targets: Array, heading: float
-) -> tuple[Keyframe, ...]:
-    return tuple(
-        keyframe(scene, view.scale, t, e, a, view.focal, heading=heading)
-        for t, e, a in zip(times, eyes, targets, strict=True)
-    )
+def plan_arc_horizontal_rand(
+    rng: np.random.Generator,
+    scene: Scene,
+    span: Span,
+    view: View,
+    *,
+    calm: float = 1.0,
+    angular_speed: Range = ANGULAR_SPEED,
+    push_pull: float = 0.5,
+) -> Draft:
+    """A horizontal arc to either side.
+
+    Args:
+        rng: where the choices come from.
+        scene, span, view: as for `plan_arc`.
+        calm: share of the usual movement.
+        angular_speed: range of the mean |Δφ| per second [rad/s]; a far camera is held to `RIG_SPEED`.
+        push_pull: probability that the arc pushes and pulls at the same time.
+    """
+    ring = view.r * np.sin(view.theta)
+    reach = span.within(RIG_SPEED, scene.fps) / ring
+    angle = min(draw(rng, angular_speed) * span.length / scene.fps, reach) * calm
+    fracs = random_fracs(rng, scene, span, view, calm) if rng.random() < push_pull else ()
+    return plan_arc(scene, span, view, delta_phi=float(rng.choice([-1.0, 1.0]) * angle), fracs=fracs)
+
+
+def plan_arc_vertical_rand(
+    rng: np.random.Generator,
+    scene: Scene,
+    span: Span,
+    view: View,
+    *,
+    calm: float = 1.0,
+    angles: dict[str, Range] | None = None,
+    push_pull: float = 0.5,
+) -> Draft:
+    """A vertical arc towards a high, an eye-level or a low angle, whichever the camera is not at.
+
+    Args:
+        rng: where the choices come from.
+        scene, span, view: as for `plan_arc`.
+        calm: share of the usual movement.
+        angles: ranges of the polar angle [rad] to go to, by name; the ground ends a low angle.
+        push_pull: probability that the arc pushes and pulls at the same time.
+    """
+    ranges = list((angles or ANGLES).values())
+    away = [goal for goal in ranges if not goal[0] <= view.theta <= goal[1]] or ranges
+    theta = draw(rng, away[int(rng.integers(len(away)))])
+    lowest = scene.lowest_theta(span.lo, span.hi, view.r, view.scale)
+    reach = span.within(RIG_SPEED, scene.fps) / view.r
+    delta = float(np.clip(np.clip(theta, THETA_MIN, lowest) - view.theta, -reach, reach)) * calm
+    fracs = random_fracs(rng, scene, span, view, calm) if rng.random() < push_pull else ()
+    return plan_arc(scene, span, view, delta_theta=delta, fracs=fracs, kind="arc-vertical")
