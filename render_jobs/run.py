@@ -22,13 +22,14 @@ import psutil
 from render_jobs.devices import parse_device
 from render_jobs.errors import EngineError, RenderJobError, WorkerError
 from render_jobs.images import PARTIAL_FOLDER, is_complete
+from render_jobs.processes import child_environment
 from render_jobs.storage import OUTPUT_FOLDER, JobRecord, read_record
 from render_jobs.worker import BAD_JOB, LOG_FILE, NO_ENGINE
 
 WATCH_INTERVAL_S = 0.5
 MEGABYTE = 1024**2
 
-OnFrame = Callable[[int, float], None]
+OnFrame = Callable[[int], None]
 
 
 @dataclass(frozen=True)
@@ -74,7 +75,7 @@ def run_job(
             waits for ever.
         memory_limit_mb: resident memory at which the child is killed; None sets no limit.
         block: frames a child renders before a fresh one takes over, so that no leak of the renderer can grow.
-        on_frame: told the number and the seconds of each finished frame.
+        on_frame: told the number of each finished frame.
 
     Returns:
         what was rendered and what it took.
@@ -135,13 +136,6 @@ def _command(folder: Path, engine: str, device: str, threads: int, frames: range
     }
     pairs = [word for pair in options.items() for word in pair]
     return [sys.executable, "-X", "faulthandler", "-m", "render_jobs.worker", str(folder), *pairs]
-
-
-def child_environment() -> dict[str, str]:
-    """The environment for children: they import the very packages that run here."""
-    root = str(Path(__file__).resolve().parents[1])
-    known = os.environ.get("PYTHONPATH")
-    return os.environ | {"PYTHONPATH": root if not known else root + os.pathsep + known}
 
 
 def _clear_remains(folder: Path) -> None:
@@ -214,7 +208,7 @@ class _Watch:
             case "frame":
                 self.frame_seconds[event["frame"]] = event["seconds"]
                 if self._on_frame is not None:
-                    self._on_frame(event["frame"], event["seconds"])
+                    self._on_frame(event["frame"])
             case "error":
                 self._error = event["message"]
 

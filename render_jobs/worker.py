@@ -10,15 +10,12 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-import ctypes
 import importlib
 import json
 import os
 import shutil
-import signal
 import sys
 import threading
-import time
 import traceback
 from collections.abc import Sequence
 from pathlib import Path
@@ -28,6 +25,7 @@ from render_jobs.devices import parse_device
 from render_jobs.errors import EngineError, RenderJobError
 from render_jobs.images import is_complete
 from render_jobs.job import RenderJob
+from render_jobs.processes import die_with_parent
 from render_jobs.storage import OUTPUT_FOLDER
 
 ENGINES = {"cycles": "render_jobs.blender.engine"}
@@ -35,8 +33,6 @@ ENGINES = {"cycles": "render_jobs.blender.engine"}
 
 LOG_FILE = "render.log"
 FAILED, BAD_JOB, NO_ENGINE = 1, 2, 3
-PR_SET_PDEATHSIG = 1
-PARENT_POLL_S = 1.0
 
 
 class Reporter:
@@ -82,7 +78,7 @@ def main(arguments: Sequence[str] | None = None) -> NoReturn:
     """Render the frames of a job that are missing."""
     options = _parse(arguments)
     if options.parent:
-        _end_with(options.parent)
+        die_with_parent(options.parent)
     reporter = Reporter(_take_over_output(options.job))
     try:
         _work(options, reporter)
@@ -155,19 +151,6 @@ def _take_over_output(folder: Path) -> TextIO:
     else:
         os.dup2(2, 1)
     return stream
-
-
-def _end_with(parent: int) -> None:
-    """Die when the parent does: no orphan keeps a machine busy."""
-    if sys.platform == "linux":  # the kernel does it at once, even while native code holds the interpreter
-        ctypes.CDLL(None, use_errno=True).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
-
-    def watch() -> None:
-        while os.getppid() == parent:
-            time.sleep(PARENT_POLL_S)
-        os._exit(FAILED)
-
-    threading.Thread(target=watch, daemon=True, name="parent-watch").start()
 
 
 if __name__ == "__main__":
