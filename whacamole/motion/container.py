@@ -77,9 +77,12 @@ class Record:
         Returns ``(T, *columns)`` whatever the file's own grouping, or any shape where no columns are named.
         """
         try:
-            array = np.array(self.value(key), dtype=np.float64)
-        except (TypeError, ValueError, OverflowError) as error:
+            given = np.asarray(self.value(key))
+        except (TypeError, ValueError, OverflowError) as error:  # a ragged list
             raise self.fail(f"'{key}' holds no plain numbers; export the motion again") from error
+        if given.dtype.kind not in "biuf":
+            raise self.fail(f"'{key}' holds {given.dtype}, no plain numbers; export the motion again")
+        array = given.astype(np.float64)
         if columns:
             width = math.prod(columns)
             if array.ndim < 2 or math.prod(array.shape[1:]) != width:
@@ -112,6 +115,8 @@ class Record:
 def open_record(path: Path) -> Record:
     """Opens ``path`` and reads its headers. Raises :class:`MotionError` for what is no npz, npy or pickle."""
     try:
+        if not path.is_file():
+            raise MotionError(f"{path}: not a regular file; give a motion file")
         with path.open("rb") as stream:
             magic = stream.read(6)
             size = path.stat().st_size

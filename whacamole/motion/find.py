@@ -37,8 +37,10 @@ def recognise(record: Record) -> Reader:
     for reader in READERS:
         if reader.matches(record):
             return reader
-    keys = ", ".join(sorted(record.keys)[:6]) or "nothing"
-    raise record.fail(f"no known motion format (it holds {keys}); docs/motions.md lists the formats")
+    held = (
+        ", ".join(f"{key} {record.shape(key) or ''}".strip() for key in sorted(record.keys)[:6]) or "nothing"
+    )
+    raise record.fail(f"no known motion format (it holds {held}); convert it to one of docs/motions.md")
 
 
 def find_motions(path: Path | str) -> list[MotionFile]:
@@ -72,15 +74,15 @@ def _walk(root: Path) -> list[_Seen]:
     seen: list[_Seen] = []
     for folder, folders, names in os.walk(root, onerror=problems.append):
         folders[:] = sorted(name for name in folders if not _hidden(name))
-        for name in [*folders, *sorted(names)]:
-            path = Path(folder, name)
-            if path.is_symlink() and not _hidden(name) and (path.is_dir() or _is_candidate(name)):
+        candidates = sorted(name for name in names if _is_candidate(name))
+        for path in (Path(folder, name) for name in (*folders, *candidates)):
+            if path.is_symlink():
                 if not path.resolve().is_relative_to(inside):
                     text = (
                         f"{path}: a link that leads out of the folder; name the folder it points to instead"
                     )
                     seen.append(_Seen(path, problem=text))
-            elif name in names and _is_candidate(name):
+            elif not path.is_dir():
                 seen.append(_look(path))
     seen += [
         _Seen(Path(error.filename), problem=f"{error.filename}: {error.strerror}; check its rights")

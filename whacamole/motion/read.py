@@ -43,6 +43,7 @@ def read_motion(
         path=file.path,
         licence=reader.licence,
         convention=reader.up,
+        stated=reader.up_stated,
         up=up,
         rest_pelvis=rest_pelvis,
     )

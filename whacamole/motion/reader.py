@@ -23,7 +23,7 @@ MAX_DISTANCE = 1000.0
 class RawPerson:
     """One person as the file has it: its own rate and axes, T frames, axis-angle [rad].
 
-    ``pose (T,J,3)`` may be the SMPL order (root, 21 body, 2 hands: J = 24), the body alone (J = 22), SMPL-H
+    ``pose (T,J,3)`` may be the body alone (root, 21 body: J = 22), SMPL-H
     (root, 21 body, 15 + 15 fingers: J = 52) or SMPL-X (root, 21 body, jaw, 2 eyes, 15 + 15 fingers: J =
     55). ``trans (T,3)`` [m] in the sense of ``model`` (``smpl``, ``smplh``, ``smplx``): the pelvis is at
     trans + j0.
@@ -82,7 +82,9 @@ class Reader:
 
     ``name`` labels datasets; ``up`` is the axis the format's documents or habits name as up (``"+z"``,
     ``"-y"``); ``matches`` tells by names and shapes, never by the file's name; ``frames`` and ``rate`` are
-    cheap; ``read`` gives the people. ``pair`` is set where two files hold the two people of one scene.
+    cheap; ``read`` gives the people. ``pair`` is set where two files hold the two people of one scene,
+    ``people`` is the number of people in a file, ``up_stated`` says that documents state the up axis (else
+    content decides alone).
     """
 
     name: str
@@ -95,6 +97,7 @@ class Reader:
     read: Callable[[Record], tuple[RawPerson, ...]]
     pair: PairNames | None = None
     people: int = 1
+    up_stated: bool = True
 
 
 def stored_rate(record: Record, *names: str) -> Fraction:
@@ -106,6 +109,11 @@ def stored_rate(record: Record, *names: str) -> Fraction:
             except ValueError as error:
                 raise record.fail(f"'{name}': {error}; repair the file's rate") from error
     raise record.fail(f"the frame rate is missing; add '{names[0]}' (frames per second)")
+
+
+def rate_or(record: Record, default: int, *names: str) -> Fraction:
+    """The stored rate where the file has one, else the rate ``default`` of the format."""
+    return stored_rate(record, *names) if record.keys & set(names) else Fraction(default)
 
 
 def constant_rate(fps: int) -> Callable[[Record], Fraction]:

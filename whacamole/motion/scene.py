@@ -42,16 +42,17 @@ def build_motion(
     path: Path,
     licence: str,
     convention: str,
+    stated: bool = True,
     up: str | None = None,
     rest_pelvis: RestPelvis = nominal_rest_pelvis,
 ) -> Motion:
-    """One scene from ``raw``; ``up`` overrides the detected up axis (one of :data:`up_axis.AXES`).
+    """One scene from ``raw``; ``up``, one of :data:`up_axis.AXES`, overrides convention and content.
 
     Raises :class:`MotionError` where the takes of a pair differ in length, or nothing is left at 30 fps.
     """
     people = _equal_lengths([_resample(person, rest_pelvis) for person in raw], path)
     joints, points = _pose(people)
-    axis = up or up_axis.choose(convention, joints, points)
+    axis = up or up_axis.choose(convention, joints, points, stated=stated)
     people = [_turn(person, up_axis.to_z_up(axis)) for person in people]
     _, points = _pose(people)
     floor = float(np.percentile((points[..., 2] - skeleton.TOUCH_RADII).min(axis=(0, 2)), 2.0))
@@ -96,10 +97,10 @@ def _resample(raw: RawPerson, rest_pelvis: RestPelvis) -> MotionPerson:
 
 
 def _face_and_hands(pose: FloatArray) -> tuple[FloatArray, ...]:
-    """Jaw, eyes and fingers of a pose in SMPL, SMPL-H or SMPL-X order; zeros where it has none."""
+    """Jaw, eyes and fingers of a pose of 22, 52 or 55 joints; zeros where it has none."""
     T, J = pose.shape[:2]
     still, flat = np.zeros((T, 3)), np.zeros((T, NUM_HAND, 3))
-    if J < 52:
+    if J == 22:
         return still, still.copy(), still.copy(), flat, flat.copy()
     left, right = pose[:, -2 * NUM_HAND : -NUM_HAND], pose[:, -NUM_HAND:]
     if J == 52:

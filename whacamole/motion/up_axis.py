@@ -1,18 +1,21 @@
-"""Which way is up: the format's convention, unless the content clearly says otherwise.
+"""Which way is up: the format's convention, unless the content clearly contradicts it.
 
-The rule. For each of the six signed axes a score in [−1, 2] is formed:
+For each of the six signed axes two measures are taken with the nominal skeleton:
 
-* upright: the median over all frames and people of the cosine between the axis and the spine (pelvis to
-  neck);
-* support: the share of frames in which a point near the lowest level of the whole motion rests (within 8 cm
-  of that level, slower than 0.3 m/s). People stand, walk, crawl and lie *on* something.
+* *upright*, in [−1, 1]: the median over all frames and people of the cosine between the axis and the spine;
+* *support*, in [0, 1]: the share of frames in which a point near the lowest level of the whole motion rests
+  (within 8 cm of that level, slower than 0.3 m/s). People stand, walk, crawl and lie *on* something.
 
-The convention stands unless another axis beats it by 0.6. One such axis wins over a wrong label on any
-motion that is upright most of the time; a crawl or a push-up, whose spine is level, keeps the convention,
-because no wrong axis gains that much from the spine alone without losing the support.
+The axis with the greatest sum wins over the convention only if it leads by 0.4, and, where the format's
+documents state the convention, only if people rest on nothing under it (support below 0.5) and on more
+under the other. So a walk or a dance in the wrong axes is turned upright, while somebody who sleeps, does
+push-ups or swims, whose spine is level, stays as the format says. Someone who stands quite still in wrong
+axes cannot be told from someone who lies: name the axis then (``up=``).
 """
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -28,8 +31,16 @@ AXES: dict[str, tuple[int, int, int]] = {
     "+x": (1, 0, 0),
     "-x": (-1, 0, 0),
 }
-MARGIN = 0.6
+MARGIN = 0.4
+UNSUPPORTED, MORE_SUPPORT = 0.5, 0.1
 REST_HEIGHT, REST_SPEED = 0.08, 0.3
+
+
+class Evidence(NamedTuple):
+    """What speaks for an axis being up; see the module's text."""
+
+    upright: float
+    support: float
 
 
 def to_z_up(axis: str) -> Rotation:
@@ -45,8 +56,8 @@ def to_z_up(axis: str) -> Rotation:
     return Rotation.from_rotvec(turns[axis])
 
 
-def scores(joints: FloatArray, points: FloatArray) -> dict[str, float]:
-    """The score of each axis.
+def evidence(joints: FloatArray, points: FloatArray) -> dict[str, Evidence]:
+    """The evidence for each axis.
 
     ``joints (P,T,22,3)`` and ``points (P,T,C,3)`` of the nominal skeleton at 30 fps, in the file's axes [m].
     """
@@ -59,12 +70,19 @@ def scores(joints: FloatArray, points: FloatArray) -> dict[str, float]:
         height = points @ direction - TOUCH_RADII
         floor = np.percentile(height.min(axis=2), 2.0)
         resting = (height < floor + REST_HEIGHT) & (speed < REST_SPEED)
-        result[name] = float(np.median(spine @ direction) + resting.any(axis=2).mean())
+        result[name] = Evidence(float(np.median(spine @ direction)), float(resting.any(axis=2).mean()))
     return result
 
 
-def choose(convention: str, joints: FloatArray, points: FloatArray) -> str:
-    """The up axis by the rule above; arguments as for :func:`scores`."""
-    score = scores(joints, points)
-    best = max(score, key=lambda name: score[name])
-    return best if score[best] > score[convention] + MARGIN else convention
+def choose(convention: str, joints: FloatArray, points: FloatArray, *, stated: bool = True) -> str:
+    """The up axis by the rule above; ``stated`` says that the format's documents name the ``convention``.
+
+    Other arguments as for :func:`evidence`.
+    """
+    found = evidence(joints, points)
+    best = max(found, key=lambda name: sum(found[name]))
+    if sum(found[best]) <= sum(found[convention]) + MARGIN:
+        return convention
+    support = found[convention].support
+    contradicted = support < UNSUPPORTED and found[best].support > support + MORE_SUPPORT
+    return best if contradicted or not stated else convention

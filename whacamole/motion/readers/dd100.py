@@ -52,4 +52,5 @@ READER = Reader(
     rate=constant_rate(30),
     read=_read,
     pair=PairNames("_00", "_01"),
+    up_stated=False,
 )
