@@ -11,7 +11,7 @@ import numpy as np
 
 from camera_rigs.drafting import Drafting
 from camera_rigs.errors import PlanError
-from camera_rigs.joins import compose, cut, transition_half
+from camera_rigs.joins import compose, cut, spans_between, transition_half
 from camera_rigs.lens import Lens
 from camera_rigs.path import aimed_path
 from camera_rigs.plan import Plan
@@ -64,7 +64,7 @@ def direct(
     director = Director(scene, style, cast, subject.num_people > 1 if interactive is None else interactive)
     best: Plan | None = None
     for attempt in range(ATTEMPTS):
-        spans = cut(subject.num_frames, subject.fps, rng)
+        spans = director.spans(rng)
         drafting = Drafting(rng, scene, director, limits, shake, attempt, last_chance=attempt == ATTEMPTS - 1)
         if not drafting.draft_all(spans):
             continue
@@ -126,6 +126,13 @@ class Director:
 
     def __init__(self, scene: Scene, style: Style, cast: Sequence[str], interactive: bool) -> None:
         self.scene, self.style, self.cast, self.interactive = scene, style, tuple(cast), interactive
+
+    def spans(self, rng: np.random.Generator) -> list[Span]:
+        """The frames cut into shots; one shot where a single kind that is sustained was asked for."""
+        subject = self.scene.subject
+        if len(self.cast) == 1 and KINDS[self.cast[0]].sustained:
+            return spans_between([0, self.scene.last], subject.fps)
+        return cut(subject.num_frames, subject.fps, rng)
 
     def situation(self, span: Span) -> str:
         """What the paper's rule says of the motion in a span: "static", "travelling" or "turning"."""

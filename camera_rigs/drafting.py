@@ -5,6 +5,7 @@ radius, the other side. If that does not help another kind of shot takes its pla
 are drawn anew, and at last the plan opens from another angle and distance. `Plan.mends` tells all of it.
 """
 
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -32,6 +33,9 @@ CALM_SUBSTITUTE = (0.6, 0.2)
 
 BACKTRACKS = 4
 """How often the shots before a dead end are drawn anew before the plan opens anew."""
+
+_NO_ROOM = "no room: "
+"""How the reason of a planner that could not plan begins."""
 
 _CONTEXT = 3
 """Frames before a transition that its accelerations and jerks need."""
@@ -104,22 +108,23 @@ class Drafting:
         span = spans[index]
         view = self._view(span, opening)
         fewest: tuple[int, Draft] | None = None
-        failed: dict[str, str] = {}
-        for rank, name in enumerate(order):
-            for calm in CALM if rank == 0 else CALM_SUBSTITUTE:
-                try:
-                    options = self.director.style.options.get(name, {})
-                    draft = KINDS[name].plan_rand(self.rng, self.scene, span, view, calm=calm, **options)
-                except PlanError as error:
-                    failed.setdefault(name, str(error))
-                    break
-                findings = self._judge(draft, span)
-                if not findings:
-                    self._record(index, name, failed)
-                    return draft
-                failed.setdefault(name, findings[0].message)
-                if fewest is None or len(findings) < fewest[0]:
-                    fewest = len(findings), draft
+        dropped: dict[str, str] = {}
+        for name, calm in _tries(order):
+            if dropped.get(name, "").startswith(_NO_ROOM):
+                continue
+            try:
+                options = self.director.style.options.get(name, {})
+                draft = KINDS[name].plan_rand(self.rng, self.scene, span, view, calm=calm, **options)
+            except PlanError as error:
+                dropped[name] = f"{_NO_ROOM}{error}"
+                continue
+            findings = self._judge(draft, span)
+            if not findings:
+                self._record(index, name, dropped)
+                return draft
+            dropped.setdefault(name, findings[0].message)
+            if fewest is None or len(findings) < fewest[0]:
+                fewest = len(findings), draft
         return fewest[1] if self.last_chance and fewest is not None else None
 
     def _view(self, span: Span, opening: View) -> View:
@@ -141,7 +146,19 @@ class Drafting:
         return judge(Evidence(path, scene.subject, scene.world, shots, self._strict, first=lo))
 
     def _record(self, index: int, name: str, failed: dict[str, str]) -> None:
-        """Note what was dropped before the draft of kind `name` was found."""
+        """Note what was dropped before the draft of kind `name` was found.
+
+        That one kind had no room is nothing to tell while another one that was asked for takes its place.
+        """
         for kind, reason in failed.items():
+            if reason.startswith(_NO_ROOM) and name in self.director.cast:
+                continue
             action = "redrawn" if kind == name else f"replaced by {name}"
             self.mends.append(Mend(index, kind, action, reason))
+
+
+def _tries(order: list[str]) -> Iterator[tuple[str, float]]:
+    """The kinds of shot to try, each with the share of its usual movement."""
+    for rank, name in enumerate(order):
+        for calm in CALM if rank == 0 else CALM_SUBSTITUTE:
+            yield name, calm

@@ -8,6 +8,7 @@ import numpy as np
 
 from camera_rigs.errors import PlanError
 from camera_rigs.scene import SCALES
+from camera_rigs.shots.catalogue import check_options
 
 STATIC: Mapping[str, float] = {
     "arc-horizontal": 3.0,
@@ -69,5 +70,6 @@ class Style:
 
     def __post_init__(self) -> None:
         unknown = [name for name in self.scales if name not in SCALES]
+        check_options(self.options)
         if unknown or not self.scales:
             raise PlanError(f"shot scales {list(self.scales)}: choose from {', '.join(SCALES)}")

@@ -11,8 +11,8 @@ import numpy as np
 from camera_rigs.errors import PlanError
 from camera_rigs.scene import THETA_MIN, Scene, Span, View
 from camera_rigs.shot import Draft, Keyframe, Move, Parameter, Shot, keyframe_at
-from camera_rigs.shots.pace import ANGULAR_SPEED, RIG_SPEED, Range, draw, random_fracs
-from camera_rigs.smoothing import at, through
+from camera_rigs.shots.pace import ANGULAR_SPEED, RIG_SPEED, Range, draw, radial, random_fracs
+from camera_rigs.smoothing import at
 from camera_rigs.spherical import Array, spherical_to_cartesian
 
 KEYFRAMES_PER_SECOND = 2.0
@@ -52,12 +52,12 @@ def plan_arc(
     if delta_phi and delta_theta:
         raise PlanError("an arc is horizontal or vertical: give delta_phi or delta_theta, not both")
     heading = float(at(scene.subject.azimuth, span.start))
-    radius_times, radii, reached = _radii(scene, span, view, fracs, delta_theta)
+    radii, reached = _radii(scene, span, view, fracs, delta_theta)
 
     def place(frames: Array) -> Array:
         progress = span.progress(frames)
         offset = spherical_to_cartesian(
-            through(radius_times, radii, frames),
+            radial(span, radii, frames),
             view.theta + delta_theta * progress,
             view.phi + heading + delta_phi * progress,
         )
@@ -89,8 +89,8 @@ def _keyframe(
 
 def _radii(
     scene: Scene, span: Span, view: View, fracs: Sequence[float], delta_theta: float
-) -> tuple[Array, Array, list[float]]:
-    """Times, radii (n + 1,) and fractions (n,) of the push and pull along an arc."""
+) -> tuple[Array, list[float]]:
+    """Radii (n + 1,) and fractions (n,) of the push and pull along an arc."""
     times = span.start + span.length * np.linspace(0.0, 1.0, len(fracs) + 1)
     radii, reached = [view.r], []
     for time, frac in zip(times[1:], fracs, strict=True):
@@ -98,7 +98,7 @@ def _radii(
         r, achieved = scene.framing(time, frac, theta, view.scale, view.focal)
         radii.append(r)
         reached.append(achieved)
-    return times, np.array(radii), reached
+    return np.array(radii), reached
 
 
 def plan_arc_horizontal_rand(

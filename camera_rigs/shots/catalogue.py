@@ -1,5 +1,6 @@
 """The one list of shots: name, planner, and how each relates to the people."""
 
+import inspect
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal, Protocol
@@ -42,6 +43,8 @@ class Kind:
         aim: what the camera looks at: the anchor, its azimuth only, or a point of its own.
         travels: whether the camera travels with the people, or stands or runs in the world.
         from_paper: whether the paper names the movement.
+        sustained: a clip that is to show this kind alone is one long shot: a second push finds no way to
+            go, and a second tripod is a cut.
         min_travel: the people must cover this much [m] for the shot to make sense.
         refuse: further reasons why the shot cannot apply to a scene.
         summary: one line for help texts and tables.
@@ -53,6 +56,7 @@ class Kind:
     aim: Literal["anchor", "azimuth", "own"] = "anchor"
     travels: bool = True
     from_paper: bool = False
+    sustained: bool = False
     min_travel: float = 0.0
     refuse: Callable[[Scene], str | None] = lambda scene: None
 
@@ -77,8 +81,8 @@ KINDS: Mapping[str, Kind] = {
     for kind in (
         Kind("arc-horizontal", arc.plan_arc_horizontal_rand, "circles the people", from_paper=True),
         Kind("arc-vertical", arc.plan_arc_vertical_rand, "rises or sinks on a circle", from_paper=True),
-        Kind("push", push_pull.plan_push_rand, "moves in", from_paper=True),
-        Kind("pull", push_pull.plan_pull_rand, "moves out", from_paper=True),
+        Kind("push", push_pull.plan_push_rand, "moves in", from_paper=True, sustained=True),
+        Kind("pull", push_pull.plan_pull_rand, "moves out", from_paper=True, sustained=True),
         Kind("push-pull", push_pull.plan_push_pull_rand, "moves in and out", from_paper=True),
         Kind(
             "tracking",
@@ -96,7 +100,7 @@ KINDS: Mapping[str, Kind] = {
             from_paper=True,
             min_travel=MIN_TRAVEL,
         ),
-        Kind("static", static.plan_static_rand, "on a tripod", aim="own", travels=False),
+        Kind("static", static.plan_static_rand, "on a tripod", aim="own", travels=False, sustained=True),
         Kind("orbit", orbit.plan_orbit_rand, "circles by a given angle, up to a full turn"),
         Kind("boom", boom.plan_boom_rand, "rises or sinks upright on a crane"),
         Kind("dolly", dolly.plan_dolly_rand, "rolls along a straight track", travels=False),
@@ -127,6 +131,21 @@ GROUPS: Mapping[str, Sequence[str]] = {
     "arc": ("arc-horizontal", "arc-vertical"),
 }
 """Names that stand for several shots."""
+
+
+def check_options(options: Mapping[str, Mapping[str, object]]) -> None:
+    """Raise `PlanError` unless every option names a kind of shot and a range of its `_rand` twin."""
+    for name, ranges in options.items():
+        if name not in KINDS:
+            raise PlanError(f"options for shot {name!r}: choose from {', '.join(KINDS)}")
+        known = [p for p in inspect.signature(KINDS[name].plan_rand).parameters if p not in _COMMON]
+        for option in ranges:
+            if option not in known:
+                raise PlanError(f"option {option!r} of shot {name!r}: it has {', '.join(known) or 'none'}")
+
+
+_COMMON = ("rng", "scene", "span", "view", "calm")
+"""Arguments that every `_rand` twin takes."""
 
 
 def resolve_shots(shots: str | Iterable[str]) -> tuple[str, ...]:

@@ -3,6 +3,8 @@
 import numpy as np
 
 from camera_rigs.scene import Scene, Span, View
+from camera_rigs.smoothing import through
+from camera_rigs.spherical import Array
 
 Range = tuple[float, float]
 
@@ -16,8 +18,11 @@ ANGULAR_SPEED: Range = (np.radians(8.0), np.radians(20.0))
 PUSH_PULL_SECONDS = 2.0
 """Time [s] between two keyframes of a random push and pull: shorter ones look like pumping."""
 
-MIN_FRAC_CHANGE = 0.1
-"""Least relative change of the radius that is worth a push or a pull."""
+MIN_CHANGE = 0.1
+"""Least relative change of the radius that is worth a push or a pull, unless the clip is too short for it."""
+
+PULL_ROOM = 1.4
+"""How far a pull goes, as a factor on the radius, from people too wide for the fractions of the scale."""
 
 
 def draw(rng: np.random.Generator, limits: Range) -> float:
@@ -25,12 +30,25 @@ def draw(rng: np.random.Generator, limits: Range) -> float:
     return float(rng.uniform(*limits))
 
 
-def radial_reach(span_frames: float, fps: float) -> float:
-    """The largest change of radius [m] by a smootherstep over `span_frames` within `RIG_SPEED`.
+def radial_reach(span: Span, count: int, fps: float) -> float:
+    """The largest change of radius [m] between two of `count` + 1 keyframes within `RIG_SPEED`.
 
-    The step's top speed is 15/8 of its mean.
+    The smootherstep between several keyframes has a top speed of 15/8 of its mean.
     """
-    return RIG_SPEED * span_frames / fps / 1.875
+    if count == 1:
+        return span.within(RIG_SPEED, fps)
+    return RIG_SPEED * span.length / count / fps / 1.875
+
+
+def radial(span: Span, radii: Array, frames: Array) -> Array:
+    """The radius [m] at `frames` of a camera that runs through `radii` (n + 1,) in equal times.
+
+    From one radius to another it runs evenly, with the cushions of the span; at each of several it turns.
+    """
+    if len(radii) == 2:
+        even: Array = radii[0] + (radii[1] - radii[0]) * span.progress(frames)
+        return even
+    return through(span.start + span.length * np.linspace(0.0, 1.0, len(radii)), radii, frames)
 
 
 def random_fracs(
@@ -41,11 +59,10 @@ def random_fracs(
     Each is held to what the camera reaches in the time from the one before.
     """
     count = max(1, round(span.length / scene.fps / PUSH_PULL_SECONDS))
-    step = span.length / count
-    reach = radial_reach(step, scene.fps) * calm
+    reach = radial_reach(span, count, scene.fps) * calm
     r, fracs = view.r, []
     for index in range(count):
-        time = span.start + (index + 1) * step
+        time = span.start + (index + 1) * span.length / count
         wanted = draw(rng, (view.scale.frac_min, view.scale.frac_max))
         goal, _ = scene.framing(time, wanted, view.theta, view.scale, view.focal)
         r = float(np.clip(goal, r - reach, r + reach))

@@ -10,8 +10,8 @@ import numpy as np
 from camera_rigs.errors import PlanError
 from camera_rigs.scene import Scene, Span, View
 from camera_rigs.shot import Draft, Move, Parameter, Shot, keyframe_at
-from camera_rigs.shots.pace import MIN_FRAC_CHANGE, draw, radial_reach, random_fracs
-from camera_rigs.smoothing import at, through
+from camera_rigs.shots.pace import MIN_CHANGE, PULL_ROOM, RIG_SPEED, draw, radial, random_fracs
+from camera_rigs.smoothing import at
 from camera_rigs.spherical import spherical_to_cartesian
 
 
@@ -64,7 +64,7 @@ def _plan(scene: Scene, span: Span, view: View, fracs: Sequence[float], kind: st
         "phi": view.phi,
     }
     target = scene.anchor(view.scale, span.frames)
-    eye = target + through(times, radii, span.frames)[:, None] * direction
+    eye = target + radial(span, radii, span.frames)[:, None] * direction
     shot = Shot(kind, view.scale.name, span.start, span.end, parameters, keyframes)
     return Draft(shot, Move.level(span, eye, target, view.focal))
 
@@ -93,12 +93,16 @@ def plan_push_pull_rand(
 def _other_frac(
     rng: np.random.Generator, scene: Scene, span: Span, view: View, calm: float, *, nearer: bool
 ) -> float:
-    """A fraction that moves the camera by at least `MIN_FRAC_CHANGE` of its distance, one way, and in
-    time."""
+    """A fraction that moves the camera by at least `MIN_CHANGE` of its distance, one way, and in time.
+
+    Where the width of the people keeps the camera from filling the view, `PULL_ROOM` is the room of a pull.
+    """
     bound = view.scale.frac_max if nearer else view.scale.frac_min
-    limit, _ = scene.framing(span.end, bound, view.theta, view.scale, view.focal)
-    reach = radial_reach(span.length, scene.fps) * calm
-    least = MIN_FRAC_CHANGE * view.r * calm
+    limit, reached = scene.framing(span.end, bound, view.theta, view.scale, view.focal)
+    if not nearer and reached < 0.99 * bound:
+        limit = max(limit, PULL_ROOM * view.r)
+    reach = span.within(RIG_SPEED, scene.fps) * calm
+    least = min(MIN_CHANGE * view.r, 0.5 * reach)
     room = (view.r - limit) if nearer else (limit - view.r)
     if min(room, reach) < least:
         word = "nearer" if nearer else "further away"

@@ -132,9 +132,17 @@ def box_overlap(subject: SubjectTrack, last: int, begin: int, stop: int) -> Arra
 
 def _followed_heading(subject: SubjectTrack, frames: list[int], span: Span, turn: float) -> Array:
     """The azimuth (N,) [rad] that the camera turns with: the facing at the keyframes, as far as `turn` lets
-    it."""
+    it.
+
+    Mirrored at both ends of the shot, it is at rest there: a transition takes over without a change of
+    direction.
+    """
     headings = [float(subject.azimuth[frames[0]])]
     for before, now in itertools.pairwise(frames):
         reach = turn * (now - before) / subject.fps
         headings.append(headings[-1] + float(np.clip(subject.azimuth[now] - headings[-1], -reach, reach)))
-    return smooth(np.interp(span.frames, frames, headings), TURN_SMOOTHING, subject.fps, travels=False)
+    inside = np.arange(span.start, span.end + 1, dtype=float)
+    turned = smooth(np.interp(inside, frames, headings), TURN_SMOOTHING, subject.fps, travels=False)
+    mirrored = np.abs(span.frames - span.start)
+    mirrored = (span.end - span.start) - np.abs(span.end - span.start - mirrored)
+    return at(turned, mirrored)
