@@ -1,0 +1,103 @@
+"""Least-squares similarity between point sets (Umeyama, PAMI 1991), for many pairs at once."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+FloatArray = npt.NDArray[np.floating[Any]]
+"""float64, or float32 for vertices."""
+
+
+@dataclass(frozen=True, eq=False)
+class Similarity:
+    """``x ↦ scale · rotation · x + translation``, for any leading axes.
+
+    Attributes:
+        scale: (…).
+        rotation: (…, 3, 3), determinant +1.
+        translation: (…, 3) [m].
+    """
+
+    scale: FloatArray
+    rotation: FloatArray
+    translation: FloatArray
+
+    def apply(self, points: FloatArray) -> FloatArray:
+        """Move points (…, N, 3); the result has the precision of the points."""
+        turned = (self.scale[..., None, None] * np.swapaxes(self.rotation, -1, -2)).astype(points.dtype)
+        moved: FloatArray = points @ turned
+        moved += self.translation[..., None, :].astype(points.dtype)
+        return moved
+
+
+def umeyama(
+    source: FloatArray,
+    target: FloatArray,
+    *,
+    with_scale: bool = True,
+    weights: FloatArray | None = None,
+) -> Similarity:
+    """The similarity that takes ``source`` nearest to ``target``: least Σ w ‖target − (s R source + t)‖².
+
+    Of the covariance U D Vᵀ = Σ w (target − mean)(source − mean)ᵀ: R = U S Vᵀ with S = diag(1, 1, ±1) so that
+    det R = +1, and s = tr(D S) / Σ w ‖source − mean‖² (Umeyama 1991, eqs. 40 to 43).
+
+    Args:
+        source: (…, N, 3) [m].
+        target: (…, N, 3) [m].
+        with_scale: fit the scale; otherwise it is 1 (a rigid alignment).
+        weights: (…, N), not negative; ``None`` counts every point once.
+
+    Returns:
+        The similarity. Where all source points coincide no scale exists: ``scale`` is NaN there.
+
+    Raises:
+        ValueError: the shapes differ or there is no point.
+    """
+    if source.shape != target.shape or source.shape[-1:] != (3,) or source.shape[-2] == 0:
+        raise ValueError(f"umeyama: {source.shape} and {target.shape}, expected two arrays (…, N ≥ 1, 3)")
+    share = _shares(source, weights)
+    mean_source = np.einsum("...n,...ni->...i", share, source, dtype=np.float64)
+    mean_target = np.einsum("...n,...ni->...i", share, target, dtype=np.float64)
+    from_mean = source - mean_source[..., None, :].astype(source.dtype)
+    to_mean = target - mean_target[..., None, :].astype(target.dtype)
+    weighted = from_mean * share[..., None].astype(from_mean.dtype)
+    covariance = (np.swapaxes(to_mean, -1, -2) @ weighted).astype(np.float64)
+    U, D, Vt = np.linalg.svd(covariance)
+    S = np.ones_like(D)
+    S[..., 2] = np.where(np.linalg.det(U) * np.linalg.det(Vt) < 0.0, -1.0, 1.0)
+    rotation = (U * S[..., None, :]) @ Vt
+    if with_scale:
+        variance = np.einsum("...ni,...ni->...", weighted, from_mean, dtype=np.float64)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            scale = np.where(variance > 0.0, (D * S).sum(axis=-1) / variance, np.nan)
+    else:
+        scale = np.ones(D.shape[:-1])
+    moved = scale[..., None] * np.einsum("...ij,...j->...i", rotation, mean_source)
+    return Similarity(scale, rotation, mean_target - moved)
+
+
+def _shares(points: FloatArray, weights: FloatArray | None) -> FloatArray:
+    """Each point's share of the whole (…, N), adding up to 1."""
+    if weights is None:
+        return np.full(points.shape[:-1], 1.0 / points.shape[-2])
+    if weights.shape != points.shape[:-1]:
+        raise ValueError(f"umeyama: weights {weights.shape} for points {points.shape}")
+    total = weights.sum(axis=-1, keepdims=True)
+    if not (total > 0.0).all():
+        raise ValueError("umeyama: the weights of a point set add up to nothing")
+    return np.asarray(weights / total)
+
+
+def align(
+    source: FloatArray, target: FloatArray, *, with_scale: bool = True, weights: FloatArray | None = None
+) -> FloatArray:
+    """``source`` after its best similarity to ``target`` (…, N, 3) [m]."""
+    return umeyama(source, target, with_scale=with_scale, weights=weights).apply(source)
+
+
+def spread(points: FloatArray) -> float:
+    """Root mean square distance of points (N, 3) from their mean [m]; 0 for one point that never moves."""
+    return float(np.sqrt(np.mean(np.sum((points - points.mean(axis=0)) ** 2, axis=-1))))

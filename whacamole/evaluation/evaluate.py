@@ -1,0 +1,203 @@
+"""``evaluate``: ground truth and predictions in, a result out, one sequence in memory at a time."""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from itertools import islice
+from pathlib import Path
+
+import numpy as np
+import scipy.sparse
+
+from whacamole.errors import EvaluationError
+from whacamole.evaluation.io import inert
+from whacamole.evaluation.io.arrays import read_npz
+from whacamole.evaluation.io.predictions import PredictionFolder
+from whacamole.evaluation.library import BodyLibrary
+from whacamole.evaluation.protocol import Protocol, protocol_named
+from whacamole.evaluation.records import Recording
+from whacamole.evaluation.result import MethodResult, Result
+from whacamole.evaluation.score import Scorer
+from whacamole.evaluation.score_vertices import VertexOptions
+from whacamole.evaluation.scores import SequenceScore
+from whacamole.evaluation.truth.source import TruthSource, open_truth
+
+Progress = Callable[[str, str, SequenceScore | str], None]
+
+
+@dataclass(frozen=True)
+class Bodies:
+    """Body model files and what vertices need.
+
+    Attributes:
+        files: model files or folders, for people who are not in the embedded body.
+        vertices: whether vertex metrics are taken; a number takes about so many evenly spread SMPL-X vertices
+            for all, which is an estimate of PVE.
+        vertex_map: sparse matrix (V of truth, V of prediction), ``.npz`` of SciPy or a pickle with
+            ``matrix``.
+        joint_regressor: ``J_regressor_h36m.npy`` (17, V), for ``joints=h36m14``.
+    """
+
+    files: tuple[Path, ...] = ()
+    vertices: bool | int = True
+    vertex_map: Path | None = None
+    joint_regressor: Path | None = None
+
+    def library(self) -> BodyLibrary:
+        """The models.
+
+        Raises:
+            EvaluationError: a path is not there.
+        """
+        return BodyLibrary(self.files, None if isinstance(self.vertices, bool) else self.vertices)
+
+    def options(self) -> VertexOptions | None:
+        """What vertex metrics need, ``None`` without them.
+
+        Raises:
+            EvaluationError: a file cannot be used.
+        """
+        if self.vertices is False:
+            return None
+        regressor = None
+        if self.joint_regressor is not None:
+            try:
+                regressor = np.asarray(np.load(self.joint_regressor, allow_pickle=False), dtype=np.float64)
+            except (OSError, ValueError) as error:
+                raise EvaluationError(f"{self.joint_regressor}: not a plain array ({error})") from error
+            if regressor.ndim != 2 or len(regressor) < 17:
+                raise EvaluationError(
+                    f"{self.joint_regressor}: {regressor.shape}, expected (17, V) of H36M joints"
+                )
+        return VertexOptions(None if self.vertex_map is None else _matrix(self.vertex_map), regressor)
+
+
+def evaluate(
+    data: Path | str | TruthSource,
+    predictions: Path | str | Mapping[str, Path | str],
+    protocol: str | Protocol = "whac",
+    *,
+    split: str = "test",
+    truth: str = "auto",
+    format: str = "auto",  # noqa: A002  # the word users type
+    bodies: Bodies | None = None,
+    jobs: int = 1,
+    limit: int | None = None,
+    progress: Progress | None = None,
+) -> Result:
+    """Score predictions against ground truth.
+
+    Sequences are read, scored and forgotten one after the other (``jobs`` at a time): memory does not grow
+    with their number, except for a few numbers a frame. A prediction that is missing, damaged or does not fit
+    is recorded as a failure of its sequence and the rest is scored.
+
+    Args:
+        data: a dataset of this project, a folder of EMDB, 3DPW, RICH or EgoBody, or any other source.
+        predictions: a folder, or folders by the name of the method.
+        protocol: a name of :data:`~whacamole.evaluation.protocol.PROTOCOLS`, or one's own.
+        split: of the data.
+        truth: which benchmark ``data`` is, "auto" to tell by what it holds.
+        format: of the predictions, "auto" to tell for each sequence.
+        bodies: body model files and vertex options.
+        jobs: sequences scored at the same time, in threads; the result is the same.
+        limit: score only the first so many sequences.
+        progress: called after each sequence with method, sequence id, and its scores or why there are none.
+
+    Raises:
+        EvaluationError: nothing can be scored at all: no ground truth, no folder of predictions, an unknown
+            name.
+    """
+    source = open_truth(Path(data), truth) if isinstance(data, str | Path) else data
+    chosen, given = protocol_named(protocol), bodies or Bodies()
+    folders = _named(predictions)
+    readers = {name: PredictionFolder(Path(path), format) for name, path in folders.items()}
+    ids = source.ids(split)[:limit]
+    scorer = Scorer(chosen, given.library(), given.options())
+    methods = {name: MethodResult(name) for name in readers}
+
+    def work(sequence_id: str) -> list[tuple[str, SequenceScore | str, str]]:
+        return list(_score(sequence_id, source, readers, scorer))
+
+    for sequence_id, outcomes in _in_order(work, ids, jobs):
+        for name, outcome, used in outcomes:
+            method = methods[name]
+            if isinstance(outcome, SequenceScore):
+                method.sequences[sequence_id] = outcome
+                known = {word for word in method.ground_truth_used.split(",") if word}
+                method.ground_truth_used = ",".join(
+                    sorted(known | {word for word in used.split(",") if word})
+                )
+            else:
+                method.failures[sequence_id] = outcome
+            if progress is not None:
+                progress(name, sequence_id, outcome)
+    return Result(chosen, source.name, split, tuple(ids), tuple(methods.values()))
+
+
+def score_recording(
+    truth: Recording, prediction: Recording, protocol: str | Protocol = "whac", bodies: Bodies | None = None
+) -> SequenceScore:
+    """Score one sequence from recordings in memory.
+
+    Raises:
+        EvaluationError: nothing of the prediction can be compared.
+    """
+    given = bodies or Bodies()
+    return Scorer(protocol_named(protocol), given.library(), given.options()).score(truth, prediction)
+
+
+def _score(
+    sequence_id: str, source: TruthSource, readers: Mapping[str, PredictionFolder], scorer: Scorer
+) -> Iterator[tuple[str, SequenceScore | str, str]]:
+    """For each method its name, the scores or why there are none, and the truths it was given."""
+    try:
+        truth = source.read(sequence_id)
+    except EvaluationError as error:
+        yield from ((name, f"ground truth: {error}", "") for name in readers)
+        return
+    for name, reader in readers.items():
+        try:
+            prediction = reader.read(sequence_id, truth.fps)
+            yield name, scorer.score(truth, prediction), prediction.ground_truth_used
+        except EvaluationError as error:
+            yield name, str(error), ""
+
+
+def _in_order(
+    work: Callable[[str], list[tuple[str, SequenceScore | str, str]]], ids: Iterable[str], jobs: int
+) -> Iterator[tuple[str, list[tuple[str, SequenceScore | str, str]]]]:
+    """Work on ``jobs`` sequences at a time, hand back in order, hold no more than twice as many."""
+    if jobs <= 1:
+        yield from ((name, work(name)) for name in ids)
+        return
+    names = iter(ids)
+    with ThreadPoolExecutor(jobs) as pool:
+        pending = [(name, pool.submit(work, name)) for name in islice(names, 2 * jobs)]
+        while pending:
+            name, future = pending.pop(0)
+            yield name, future.result()
+            pending += [(name, pool.submit(work, name)) for name in islice(names, 1)]
+
+
+def _named(predictions: Path | str | Mapping[str, Path | str]) -> Mapping[str, Path | str]:
+    if isinstance(predictions, str | Path):
+        return {Path(predictions).resolve().name: predictions}
+    if not predictions:
+        raise EvaluationError("no predictions were given")
+    return predictions
+
+
+def _matrix(path: Path) -> object:
+    """A sparse vertex map."""
+    if path.suffix == ".npz":
+        values = read_npz(path)
+        if {"data", "indices", "indptr", "shape"} <= values.keys():
+            parts = (values["data"], values["indices"], values["indptr"])
+            return scipy.sparse.csr_array(parts, shape=tuple(values["shape"]))
+        dense = values.get("matrix")
+    else:
+        loaded = inert.load(path)
+        dense = loaded.get("matrix") if isinstance(loaded, dict) else None
+    if dense is None:
+        raise EvaluationError(f"{path}: no vertex map ('matrix', or scipy.sparse.save_npz of a CSR matrix)")
+    return scipy.sparse.csr_array(np.asarray(dense, dtype=np.float32))

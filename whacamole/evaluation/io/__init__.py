@@ -1,0 +1,1 @@
+"""Reading predictions: this project's npz files and the outputs of other methods."""

@@ -1,0 +1,1 @@
+"""Ground truth: this project's datasets and the standard benchmarks, behind one interface."""
