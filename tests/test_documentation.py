@@ -103,28 +103,35 @@ def labels_and_folder(tmp_path_factory: pytest.TempPathFactory) -> tuple[Sequenc
     return labels, folder
 
 
-@pytest.mark.parametrize("name", ["README.md", "docs/conventions.md", "docs/format.md"])
+def _run(name: str) -> dict[str, Any]:
+    """All Python blocks of a page, one after the other in the working directory; returns the variables."""
+    variables: dict[str, Any] = {}
+    for block in re.findall(r"```python\n(.*?)```", _text(name), flags=re.DOTALL):
+        exec(compile(block, name, "exec"), variables)
+    for value in variables.values():
+        if isinstance(value, np.lib.npyio.NpzFile):
+            value.close()
+    return variables
+
+
+@pytest.mark.parametrize(
+    ("page", "last"),
+    [("docs/conventions.md", "point"), ("docs/format.md", "nearest"), ("README.md", "pixels")],
+)
 def test_the_code_runs(
-    name: str, labels_and_folder: tuple[SequenceLabels, Path], monkeypatch: pytest.MonkeyPatch
+    page: str, last: str, labels_and_folder: tuple[SequenceLabels, Path], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """All Python blocks of a page, one after the other; their assertions are the proof."""
+    """The assertions in the blocks are the proof; the last variable shows that all of them ran."""
     monkeypatch.chdir(labels_and_folder[1])
-    blocks = re.findall(r"```python\n(.*?)```", _text(name), flags=re.DOTALL)
-    assert blocks
-    namespace: dict[str, Any] = {}
-    for block in blocks:
-        exec(compile(block, name, "exec"), namespace)
+    assert np.all(np.isfinite(_run(page)[last]))
 
 
 def test_the_code_of_the_readme_gives_what_it_says(
     labels_and_folder: tuple[SequenceLabels, Path], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(labels_and_folder[1])
-    block = re.findall(r"```python\n(.*?)```", _text("README.md"), flags=re.DOTALL)[0]
-    namespace: dict[str, Any] = {}
-    exec(compile(block, "README.md", "exec"), namespace)
     expected = labels_and_folder[0].people["joints_image"][0, 0]
-    np.testing.assert_allclose(namespace["pixels"], expected, atol=1e-3)
+    np.testing.assert_allclose(_run("README.md")["pixels"], expected, atol=1e-3)
 
 
 # --- Tables ----------------------------------------------------------------------------------------------
