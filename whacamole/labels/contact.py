@@ -1,14 +1,17 @@
 """The arrays of ``contact.npz``, built frame by frame. docs/contact.md defines every one of them."""
 
 from collections.abc import Sequence
+from itertools import combinations
 
 import numpy as np
 
 from whacamole.body import BodyModel
-from whacamole.labels.arrays import AnyArray, Floats
+from whacamole.labels.arrays import AnyArray, Bools, Floats
 from whacamole.labels.ground import ContactThresholds, PartRows, ground_vertices
 from whacamole.labels.parts import BodyParts, skinning_parts
+from whacamole.labels.patches import PosedSkin, SkinMap
 from whacamole.labels.skin import OuterSkin
+from whacamole.labels.touch import EXACT_WITHIN, touch
 
 
 class ContactLabels:
@@ -43,6 +46,11 @@ class ContactLabels:
         shape = (num_people, num_frames, len(self._parts.names))
         self._ground_contact = np.zeros(shape, dtype=np.bool_)
         self._ground_distance = np.full(shape, np.inf, dtype=np.float32)
+        pairs = (num_people, num_people, num_frames, len(self._parts.names))
+        self._person_contact = np.zeros(pairs, dtype=np.bool_)
+        self._person_distance = np.full(pairs, np.inf, dtype=np.float32)
+        self._person_part = np.full(pairs, -1, dtype=np.int16)
+        self._map = SkinMap.build(self._skin, self._parts, model.v_template) if num_people > 1 else None
         self._bits = np.zeros((num_people, num_frames, -(-model.num_vertices // 8)), dtype=np.uint8)
 
     def add(
@@ -60,17 +68,34 @@ class ContactLabels:
             now: of this frame.
             after: of the next frame, None at the end.
         """
+        touching = self._add_persons(frame, now)
         for number, body in enumerate(now):
-            touching = self._on_skin & ground_vertices(
+            grounded = self._on_skin & ground_vertices(
                 before[number] if before is not None else None,
                 body,
                 after[number] if after is not None else None,
                 self._fps,
                 self._limits,
             )
-            self._ground_contact[number, frame] = self._rows.any(touching)
+            self._ground_contact[number, frame] = self._rows.any(grounded)
             self._ground_distance[number, frame] = self._rows.minimum(body[:, 2])
-            self._bits[number, frame] = np.packbits(touching)
+            self._bits[number, frame] = np.packbits(grounded | touching[number])
+
+    def _add_persons(self, frame: int, now: Sequence[Floats]) -> Bools:
+        """Label every ordered pair, and return the vertices ``(P, V)`` that touch anybody."""
+        touching = np.zeros((len(now), len(self._on_skin)), dtype=np.bool_)
+        if self._map is None:
+            return touching
+        skins = [PosedSkin(self._map, self._skin.close(body)) for body in now]
+        for one, other in combinations(range(len(now)), 2):
+            seen = touch(skins[one], skins[other], len(self._parts.names), self._limits.person)
+            for pair, side in zip(((one, other), (other, one)), seen, strict=True):
+                self._person_distance[*pair, frame] = side.distance
+                self._person_contact[*pair, frame] = side.other_part >= 0
+                self._person_part[*pair, frame] = side.other_part
+                ids = self._map.ids[side.points]
+                touching[pair[0], ids[ids < touching.shape[1]]] = True
+        return touching
 
     def arrays(self) -> dict[str, AnyArray]:
         """All keys of ``contact.npz``."""
@@ -78,10 +103,14 @@ class ContactLabels:
             "part_names": np.array(self._parts.names, dtype=np.str_),
             "ground_contact": self._ground_contact,
             "ground_distance": self._ground_distance,
+            "person_contact": self._person_contact,
+            "person_distance": self._person_distance,
+            "person_contact_part": self._person_part,
             "vertex_contact": self._bits,
             "ground_threshold": np.array(self._limits.ground),
             "velocity_threshold": np.array(self._limits.velocity),
             "person_threshold": np.array(self._limits.person),
+            "person_exact_within": np.array(EXACT_WITHIN),
         }
 
 

@@ -8,12 +8,12 @@ import numpy as np
 from camera_rigs import CameraPath
 from whacamole.body import BodyModel, BodyParams
 from whacamole.labels.arrays import AnyArray, Float64s, Floats, Integers
-from whacamole.labels.mesh import vertex_areas
+from whacamole.labels.mesh import triangulated, vertex_areas
 from whacamole.labels.raster import RasterMesh, rasterize
 from whacamole.labels.visibility import flesh_thickness, joint_visibility, seen_box, truncation, whole_box
 
 WorldMesh = tuple[Floats, Integers]
-"""Vertices ``(V, 3)`` in the world [m] and triangles ``(F, 3)``."""
+"""Vertices ``(V, 3)`` in the world [m] and faces, ``(F, 3)`` or ``(F, 4)``."""
 
 _EXACT = ("global_orient", "transl")  # float64; all other parameters float32
 _PARAMETERS = (
@@ -131,7 +131,7 @@ class PeopleLabels:
         worn = person.worn(frame) if person.worn else ()
         surfaces = [
             (to_camera(points, self._T_camera_world[frame]), faces)
-            for points, faces in ((body, self._model.faces), *worn)
+            for points, faces in ((body, self._model.faces), *((v, triangulated(f)) for v, f in worn))
         ]
         alone = rasterize([RasterMesh(points, faces) for points, faces in surfaces], K, width, height)
         own = images.mask == person.track_id

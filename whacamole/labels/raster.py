@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from whacamole.labels.arrays import Bools, Float64s, Floats, Indices, Integers
+from whacamole.labels.arrays import Bools, Float64s, Floats, Indices, Integers, ranges
 from whacamole.labels.clipping import ScreenTriangles, screen_triangles
 
 NEAR = 0.01
@@ -106,7 +106,7 @@ def _spans(triangles: ScreenTriangles, width: int, height: int) -> tuple[Indices
     y = triangles.xy[..., 1]
     top = np.clip(np.ceil(y.min(axis=1) - 0.5), 0, height).astype(np.intp)
     bottom = np.clip(np.ceil(y.max(axis=1) - 0.5), 0, height).astype(np.intp)
-    owner, offset = _ranges(bottom - top)
+    owner, offset = ranges(bottom - top)
     line = top[owner] + offset
     left, right = _crossings(triangles.xy, owner, line + 0.5)
     first = np.clip(np.ceil(left - 0.5), 0, width).astype(np.intp)
@@ -145,7 +145,7 @@ def _fragments(
     limits = np.arange(_FRAGMENTS_AT_ONCE, total[-1] if len(total) else 0, _FRAGMENTS_AT_ONCE)
     blocks = np.searchsorted(total, limits)
     for span in np.split(np.arange(len(owner)), blocks):
-        which, offset = _ranges(end[span] - first[span])
+        which, offset = ranges(end[span] - first[span])
         spans = span[which]
         row, column = owner[spans], first[spans] + offset
         origin = triangles.xy[row, 0]
@@ -167,10 +167,3 @@ def _inverse_depth_gradient(triangles: ScreenTriangles) -> Float64s:
     along_x = (rise[:, 0] * edge[:, 1, 1] - rise[:, 1] * edge[:, 0, 1]) / safe
     along_y = (rise[:, 1] * edge[:, 0, 0] - rise[:, 0] * edge[:, 1, 0]) / safe
     return np.stack([along_x, along_y], axis=1)
-
-
-def _ranges(counts: Indices) -> tuple[Indices, Indices]:
-    """For counts ``[2, 0, 3]``: owners ``[0, 0, 2, 2, 2]`` and offsets ``[0, 1, 0, 1, 2]``."""
-    owner = np.repeat(np.arange(len(counts)), counts)
-    start = np.cumsum(counts) - counts
-    return owner, np.arange(len(owner)) - start[owner]

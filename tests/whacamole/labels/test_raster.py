@@ -20,7 +20,7 @@ def pixel_rays() -> np.ndarray:
 
 
 def first_hit(vertices: np.ndarray, faces: np.ndarray, near: float) -> np.ndarray:
-    """Depth of the first triangle each ray meets beyond ``near``: Möller and Trumbore, one triangle at a time."""
+    """Depth of the first triangle each ray meets beyond ``near`` (Möller and Trumbore), one at a time."""
     rays = pixel_rays()
     depth = np.full((HEIGHT, WIDTH), np.inf)
     for a, b, c in vertices[faces]:
