@@ -11,11 +11,11 @@ from camera_rigs.scene import SCALES
 from camera_rigs.shots.catalogue import check_options
 
 STATIC: Mapping[str, float] = {
-    "arc-horizontal": 3.0,
-    "arc-vertical": 3.0,
-    "push-pull": 2.0,
-    "push": 1.0,
-    "pull": 1.0,
+    "arc-horizontal": 4.0,
+    "arc-vertical": 4.0,
+    "push-pull": 1.0,
+    "push": 0.5,
+    "pull": 0.5,
     "orbit": 1.0,
     "boom": 1.0,
     "dolly": 1.0,
@@ -40,8 +40,8 @@ only."""
 TURNING: Mapping[str, float] = {"pan": 6.0, "follow": 2.0, "static": 1.0, "dolly": 1.0}
 """Long-distance motion whose facing turns: pan, as the paper says."""
 
-REPEAT = 0.25
-"""Factor on the weight of the kind that has just been shown."""
+REPEAT = 0.1
+"""Factor on the weight of the kind that has just been shown: a vertical arc mostly follows a horizontal one."""
 
 
 @dataclass(frozen=True)

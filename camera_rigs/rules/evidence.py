@@ -55,9 +55,9 @@ class Limits:
     obstacle: float = 0.15
     wall: float = 0.15
     person: float = 0.2
-    speed: float = 3.5
-    acceleration: float = 8.0
-    jerk: float = 40.0
+    speed: float = 3.0
+    acceleration: float = 6.0
+    jerk: float = 30.0
     turn: float = 90.0
     zoom: float = 1.0
     out_seconds: float = 0.3

@@ -11,10 +11,10 @@ from camera_rigs.shots.pace import RIG_SPEED, Range, draw
 from camera_rigs.smoothing import at, smootherstep
 from camera_rigs.spherical import Array, cartesian_to_spherical, spherical_to_cartesian, wrap
 
-BEHIND: Range = (0.9, 1.3)
+BEHIND: Range = (1.0, 1.4)
 """Range [m] of the distance behind the neck: the shoulder fills the edge of the frame, not its half."""
 
-BESIDE: Range = (0.35, 0.5)
+BESIDE: Range = (0.45, 0.65)
 """Range [m] sideways of the neck: enough to see past the head."""
 
 ABOVE = 0.15
