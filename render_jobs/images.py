@@ -18,6 +18,10 @@ from render_jobs.passes import PASSES, RenderPass
 PARTIAL_FOLDER = ".partial"
 """In the output folder: files that are being written. Safe to remove when nothing renders."""
 
+JPEG_QUALITY = 95
+PNG_LEVEL = 3
+"""Of 9: more takes far longer than it saves."""
+
 Writer = Callable[[Path], None]
 
 
@@ -46,6 +50,19 @@ def publish_frame(out: Path, frame: int, writers: Mapping[str, Writer], image_fo
     for beside, target in ready:
         target.parent.mkdir(exist_ok=True)
         beside.replace(target)
+
+
+def picture_writer(source: Path | Image.Image, image_format: str) -> Writer:
+    """What encodes a display-ready picture as JPEG (full colour resolution) or PNG, without any metadata."""
+
+    def write(path: Path) -> None:
+        with source if isinstance(source, Image.Image) else Image.open(source) as image:
+            if image_format == "jpg":
+                image.convert("RGB").save(path, format="JPEG", quality=JPEG_QUALITY, subsampling=0)
+            else:
+                image.convert("RGB").save(path, format="PNG", compress_level=PNG_LEVEL)
+
+    return write
 
 
 def label_writer(name: str, values: NDArray[Any], max_track_id: int) -> Writer:

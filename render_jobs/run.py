@@ -2,32 +2,21 @@
 
 from __future__ import annotations
 
-import contextlib
-import json
 import os
-import queue
 import shutil
-import signal
-import subprocess
 import sys
-import threading
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO, Any
-
-import psutil
+from typing import Any
 
 from render_jobs.devices import parse_device
 from render_jobs.errors import EngineError, RenderJobError, WorkerError
 from render_jobs.images import PARTIAL_FOLDER, is_complete
-from render_jobs.processes import child_environment
 from render_jobs.storage import OUTPUT_FOLDER, JobRecord, read_record
+from render_jobs.watch import ChildEnd, describe_end, watch_child
 from render_jobs.worker import BAD_JOB, LOG_FILE, NO_ENGINE
-
-WATCH_INTERVAL_S = 0.5
-MEGABYTE = 1024**2
 
 OnFrame = Callable[[int], None]
 
@@ -90,16 +79,24 @@ def run_job(
     record = read_record(folder)
     _clear_remains(folder)
     began = time.monotonic()
-    watch = _Watch(folder, timeout, memory_limit_mb, on_frame)
+    log = folder / LOG_FILE
+    progress = _Progress(on_frame)
+    peak = 0.0
     for frames in _blocks(record, folder / OUTPUT_FOLDER, block):
-        watch.run(_command(folder, engine, device, threads, frames))
+        command = _command(folder, engine, device, threads, frames)
+        try:
+            end = watch_child(command, log, progress.hear, timeout=timeout, memory_limit_mb=memory_limit_mb)
+        finally:
+            _clear_remains(folder)
+        _judge(end, progress.error, log)
+        peak = max(peak, end.peak_memory_mb)
     return JobResult(
-        frames=len(watch.frame_seconds),
+        frames=len(progress.frame_seconds),
         seconds=time.monotonic() - began,
-        frame_seconds=watch.frame_seconds,
-        devices=watch.devices,
-        peak_memory_mb=watch.peak_memory_mb,
-        log=watch.log,
+        frame_seconds=progress.frame_seconds,
+        devices=progress.devices,
+        peak_memory_mb=peak,
+        log=log,
     )
 
 
@@ -145,63 +142,17 @@ def _clear_remains(folder: Path) -> None:
     shutil.rmtree(folder / OUTPUT_FOLDER / PARTIAL_FOLDER, ignore_errors=True)
 
 
-class _Watch:
-    """Runs children for one job and keeps what they say."""
+class _Progress:
+    """What the children of one job have said so far."""
 
-    def __init__(
-        self, folder: Path, timeout: float | None, memory_limit_mb: float | None, on_frame: OnFrame | None
-    ) -> None:
-        self.log = folder / LOG_FILE
+    def __init__(self, on_frame: OnFrame | None) -> None:
         self.frame_seconds: dict[int, float] = {}
         self.devices = ""
-        self.peak_memory_mb = 0.0
-        self._folder = folder
-        self._timeout = timeout
-        self._memory_limit_mb = memory_limit_mb
+        self.error = ""
         self._on_frame = on_frame
-        self._error = ""
 
-    def run(self, command: list[str]) -> None:
-        """Run one child to its end. Raises as :func:`run_job` does."""
-        self._error = ""
-        with self.log.open("ab") as log:
-            child = subprocess.Popen(
-                command,
-                stdin=subprocess.DEVNULL,
-                stdout=subprocess.PIPE,
-                stderr=log,
-                env=child_environment(),
-                start_new_session=True,  # the terminal's Ctrl-C reaches only us; we end the child
-            )
-        try:
-            self._follow(child)
-        finally:
-            child.kill()
-            child.wait()
-            _clear_remains(self._folder)
-        self._judge(child.returncode)
-
-    def _follow(self, child: subprocess.Popen[bytes]) -> None:
-        assert child.stdout is not None
-        lines: queue.Queue[bytes | None] = queue.Queue()
-        threading.Thread(target=_read_lines, args=(child.stdout, lines), daemon=True).start()
-        heard = time.monotonic()
-        while True:
-            self._check_memory(child.pid)
-            try:
-                line = lines.get(timeout=WATCH_INTERVAL_S)
-            except queue.Empty:
-                if self._timeout is not None and time.monotonic() - heard > self._timeout:
-                    reason = f"no frame was finished in {self._timeout:.0f} s, the process was killed"
-                    raise self._failure(reason) from None
-                continue
-            if line is None:
-                child.wait()
-                return
-            heard = time.monotonic()
-            self._hear(json.loads(line))
-
-    def _hear(self, event: dict[str, Any]) -> None:
+    def hear(self, event: dict[str, Any]) -> None:
+        """Take in one event of :mod:`render_jobs.worker`."""
         match event["event"]:
             case "start":
                 self.devices = event["devices"]
@@ -210,33 +161,15 @@ class _Watch:
                 if self._on_frame is not None:
                     self._on_frame(event["frame"])
             case "error":
-                self._error = event["message"]
-
-    def _check_memory(self, pid: int) -> None:
-        with contextlib.suppress(psutil.Error):
-            used = psutil.Process(pid).memory_info().rss / MEGABYTE
-            self.peak_memory_mb = max(self.peak_memory_mb, used)
-            if self._memory_limit_mb is not None and used > self._memory_limit_mb:
-                limit = f"the limit of {self._memory_limit_mb:.0f} MB"
-                raise self._failure(f"the process was killed at {used:.0f} MB, over {limit}")
-
-    def _judge(self, code: int) -> None:
-        if code == 0:
-            return
-        if code == NO_ENGINE:
-            raise EngineError(self._error)
-        if code == BAD_JOB and self._error:
-            raise RenderJobError(self._error)
-        if code < 0:
-            hint = ": was memory short?" if code == -signal.SIGKILL else ""
-            raise self._failure(f"the process was ended by {signal.Signals(-code).name}{hint}")
-        raise self._failure(self._error or f"the process ended with status {code}")
-
-    def _failure(self, reason: str) -> WorkerError:
-        return WorkerError(f"{self._folder.name}: {reason} (log: {self.log})", self.log)
+                self.error = event["message"]
 
 
-def _read_lines(stream: IO[bytes], lines: queue.Queue[bytes | None]) -> None:
-    for line in stream:
-        lines.put(line)
-    lines.put(None)
+def _judge(end: ChildEnd, error: str, log: Path) -> None:
+    """Raise what the end of a worker means, or return if all is well."""
+    if end.status == 0:
+        return
+    if end.status == NO_ENGINE:
+        raise EngineError(error)
+    if end.status == BAD_JOB and error:
+        raise RenderJobError(error)
+    raise WorkerError(f"{error or describe_end(end)} (log: {log})", log)

@@ -52,6 +52,14 @@ def _new_curve(target: Any, data_path: str, index: int) -> Any:
     return curve
 
 
+def write_bitmap(image_settings: Any) -> None:
+    """Make 8-bit BMP the file format."""
+    if IS_5:
+        image_settings.media_type = "IMAGE"
+    image_settings.file_format = "BMP"
+    image_settings.color_mode = "RGB"
+
+
 def write_multilayer_exr(image_settings: Any) -> None:
     """Make float32 uncompressed multilayer EXR the file format: it is read once and removed."""
     if IS_5:

@@ -6,14 +6,13 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from functools import partial
 from pathlib import Path
 from typing import NoReturn
 
 from render_jobs.blender.raw import read_labels
 from render_jobs.blender.render import RawFrame, build_scene, render_frames
 from render_jobs.devices import DeviceChoice
-from render_jobs.images import Writer, label_writer, publish_frame
+from render_jobs.images import Writer, label_writer, picture_writer, publish_frame
 from render_jobs.job import RenderJob
 
 FRAMES_WAITING = 3
@@ -80,12 +79,8 @@ def render(
 def _writers(job: RenderJob, raw: RawFrame) -> dict[str, Writer]:
     writers: dict[str, Writer] = {}
     if raw.rgb is not None:
-        writers["rgb"] = partial(_move, raw.rgb)
+        writers["rgb"] = picture_writer(raw.rgb, job.image_format)
     if raw.labels is not None:
         for name, values in read_labels(raw.labels, job, raw.frame).items():
             writers[name] = label_writer(name, values, job.max_track_id)
     return writers
-
-
-def _move(source: Path, target: Path) -> None:
-    source.replace(target)

@@ -15,7 +15,7 @@ from typing import Any, NoReturn
 import bpy
 
 from render_jobs.blender.camera import add_camera
-from render_jobs.blender.compat import write_multilayer_exr
+from render_jobs.blender.compat import write_bitmap, write_multilayer_exr
 from render_jobs.blender.cycles import set_up_cycles
 from render_jobs.blender.geometry import add_mesh
 from render_jobs.blender.lights import add_light, set_environment
@@ -27,9 +27,6 @@ from render_jobs.passes import LABEL_PASSES
 BEAUTY_LAYER = "beauty"
 LABEL_LAYER = "labels"
 VIEW_TRANSFORM = {"standard": ("Standard", "None"), "agx": ("AgX", "AgX - Medium High Contrast")}
-JPEG_QUALITY = 95
-PNG_COMPRESSION = 30
-"""Percent; more takes far longer than it saves."""
 ALPHA_SEEN = 0.5
 """A surface counts as seen, for the labels, from this opacity on."""
 
@@ -40,7 +37,7 @@ class RawFrame:
 
     Attributes:
         frame: its number.
-        rgb: the encoded picture, or None where the job wants none.
+        rgb: the picture as BMP, display-ready, or None where the job wants none.
         labels: a multilayer EXR, or None where the job wants no label.
     """
 
@@ -105,12 +102,12 @@ def render_frames(
     scene.render.filepath = str(scratch / "raw_")
 
     def picture_path(frame: int) -> Path:
-        return scratch / f"rgb_{frame:06d}.{job.image_format}"
+        return scratch / f"rgb_{frame:06d}.bmp"
 
     def keep_picture(rendered: Any, *_: object) -> None:
         try:
             if wants_rgb:
-                _save_picture(rendered, picture_path(rendered.frame_current), job.image_format)
+                _save_picture(rendered, picture_path(rendered.frame_current))
         except BaseException as error:
             abort(error)
 
@@ -183,16 +180,12 @@ def _set_output(job: RenderJob) -> None:
     write_multilayer_exr(scene.render.image_settings)
 
 
-def _save_picture(scene: Any, path: Path, image_format: str) -> None:
-    """Encode the frame just rendered, colour managed, and leave the settings as they were: for raw layers."""
+def _save_picture(scene: Any, path: Path) -> None:
+    """Write the frame just rendered, colour managed, and leave the settings as they were: for raw layers.
+
+    BMP, as it is quick to write and holds no metadata; that of Blender's JPEG tells the time of day.
+    """
     image = scene.render.image_settings
-    if image_format == "jpg":
-        image.file_format = "JPEG"
-        image.quality = JPEG_QUALITY
-    else:
-        image.file_format = "PNG"
-        image.color_depth = "8"
-        image.compression = PNG_COMPRESSION
-    image.color_mode = "RGB"
+    write_bitmap(image)
     bpy.data.images["Render Result"].save_render(str(path), scene=scene)
     write_multilayer_exr(image)
