@@ -26,6 +26,18 @@ def parse_size(value: object) -> object:
     return value
 
 
+def parse_people(value: object) -> object:
+    """Turn ``"3"`` into ``(3, 3)`` and ``"1-6"`` into ``(1, 6)``; leave anything else to the validator."""
+    if isinstance(value, int):
+        return (value, value)
+    if isinstance(value, str):
+        parts = value.split("-")
+        if len(parts) <= 2 and all(part.strip().isdigit() for part in parts):
+            return (int(parts[0]), int(parts[-1]))
+        raise ValueError(f"{value!r} is not a number or a range such as 1-6")
+    return value
+
+
 def _split_commas(value: object) -> object:
     """Turn ``"arc,tracking"`` into ``("arc", "tracking")``."""
     if isinstance(value, str):
@@ -35,6 +47,8 @@ def _split_commas(value: object) -> object:
 
 Names = Annotated[tuple[str, ...], BeforeValidator(_split_commas)]
 Side = Annotated[int, Field(ge=16, le=16384)]
+Count = Annotated[int, Field(ge=1, le=32)]
+People = Annotated[tuple[Count, Count], BeforeValidator(parse_people)]
 Millimetres = Annotated[float, Field(ge=4, le=1200)]
 FocalRange = tuple[Millimetres, Millimetres]
 Size = Annotated[tuple[Side, Side], BeforeValidator(parse_size)]
@@ -47,6 +61,10 @@ class Recipe(BaseModel):
 
     motions: Path | None = Field(None, description="folder or file of motions; none: the embedded ones")
     shots: Names = Field(("auto",), description="camera moves to choose from; auto: the director decides")
+    people: People = Field(
+        (1, 1), description="fewest and most people in a scene of single motions; pairs stay as captured"
+    )
+    stages: Names = Field((), description="stages to choose from; none: all of them")
     shots_per_motion: int = Field(1, ge=1, le=10000, description="sequences made of each motion")
     limit: int | None = Field(None, ge=1, description="make at most so many sequences")
     frames: int = Field(
@@ -55,7 +73,8 @@ class Recipe(BaseModel):
     fps: float = Field(30.0, gt=0, le=240, description="frames a second of the video and its labels")
     size: Size = Field((640, 360), description="width and height of a frame in pixels")
     focal_mm: FocalRange = Field(
-        (24.0, 50.0), description="shortest and longest lens, as focal length on 36 mm film along the longer side"
+        (24.0, 50.0),
+        description="shortest and longest lens, as focal length on 36 mm film along the longer side",
     )
     quality: Literal["draft", "standard", "high"] = Field("standard", description="render settings")
     engine: Literal["auto", "cycles"] = Field("auto", description="renderer")
@@ -69,6 +88,23 @@ class Recipe(BaseModel):
     def _focal_range_in_order(self) -> Self:
         if self.focal_mm[0] > self.focal_mm[1]:
             raise ValueError(f"focal_mm {self.focal_mm}: the shortest lens comes first")
+        return self
+
+    @model_validator(mode="after")
+    def _people_in_order(self) -> Self:
+        if self.people[0] > self.people[1]:
+            raise ValueError(f"people {self.people}: the fewest come first")
+        return self
+
+    @model_validator(mode="after")
+    def _stages_exist(self) -> Self:
+        if not self.stages:
+            return self
+        from whacamole.stage import STAGES  # late: it loads the geometry of all stages
+
+        unknown = sorted(set(self.stages) - set(STAGES))
+        if unknown:
+            raise ValueError(f"stages: {unknown[0]!r} is none of {', '.join(STAGES)}")
         return self
 
     @model_validator(mode="after")

@@ -26,6 +26,14 @@ def render(
     shots_per_motion: Annotated[
         int | None, typer.Option(help="Sequences made of each motion.", show_default="1")
     ] = None,
+    people: Annotated[
+        str | None,
+        typer.Option(help="People in a scene of single motions: 3, or 1-6.", show_default="1"),
+    ] = None,
+    stages: Annotated[
+        str | None,
+        typer.Option(help="Places to choose from, such as plaza,park.", show_default="all"),
+    ] = None,
     frames: Annotated[
         int | None,
         typer.Option(help="Frames a sequence at most; 0: the whole motion.", show_default="240"),
@@ -74,6 +82,7 @@ def render(
 
     given = {
         "motions": motions, "shots": shots, "shots_per_motion": shots_per_motion, "frames": frames,
+        "people": people, "stages": stages,
         "size": size, "fps": fps, "quality": quality, "engine": engine, "passes": passes,
         "image_format": image_format, "body_model": body_model, "seed": seed, "limit": limit,
     }  # fmt: skip

@@ -29,7 +29,7 @@ def write_labels(
     sequence: SequenceLayout,
     on_frame: Callable[[int], None],
 ) -> dict[str, NDArray[Any]]:
-    """Write ``camera.npz``, ``people.npz``, ``contact.npz`` and ``shot.json``; return the arrays of people.npz.
+    """Write the three ``.npz`` files and ``shot.json``; return the arrays of ``people.npz``.
 
     Args:
         frames: folder of the rendered passes.
@@ -40,7 +40,7 @@ def write_labels(
         mask = np.asarray(Image.open(frames / PASSES["mask"].file(frame)))
         return FrameImages(mask, read_exr(frames / PASSES["depth"].file(frame))["Z"])
 
-    people = [_labelled(person, take) for person in take.performers]
+    people = [_labelled(person) for person in take.performers]
     labels = label_sequence(people, body, plan.path, images, on_frame=on_frame)
     write_arrays(sequence.camera, labels.camera)
     write_arrays(sequence.people, labels.people)
@@ -49,9 +49,9 @@ def write_labels(
     return labels.people
 
 
-def _labelled(person: Performer, take: Take) -> LabelledPerson:
+def _labelled(person: Performer) -> LabelledPerson:
     inner = person.params.slice(1, person.params.num_frames - 1)
-    return LabelledPerson(person.track_id, take.motion.id, person.role.gender, inner, _worn(person))
+    return LabelledPerson(person.track_id, person.motion_id, person.role.gender, inner, _worn(person))
 
 
 def _worn(person: Performer) -> Callable[[int], list[WorldMesh]] | None:

@@ -87,7 +87,7 @@ class ProgressDisplay:
                 done = self._finished + self._made
                 self._console.print(f"{sequence_id}  done  ({done}/{self._sequences}, {self._pace()})")
             else:
-                self._console.print(f"[red]{sequence_id}  failed:[/] {outcome.error}", soft_wrap=True)
+                self._console.print(f"{sequence_id}  [red]failed[/]  (why: below, at the end)")
 
     def _pace(self) -> str:
         """Return frames a second and the time left, from the sequences made so far."""

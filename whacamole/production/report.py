@@ -8,7 +8,7 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
-from whacamole.dataset import DatasetLayout, read_summary
+from whacamole.dataset import DatasetLayout, read_summary, side_of
 from whacamole.production.worklist import Worklist
 
 __all__ = ["Production"]
@@ -106,7 +106,7 @@ class Production:
                 str(facts["people"]),
                 str(facts["frames"]),
                 ", ".join(facts["shots"]),
-                facts["split"],
+                side_of(facts["motion_id"], order.recipe.test_fraction),
                 f"{facts['mean_visible_fraction']:.2f}",
             )
         return table

@@ -10,6 +10,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+from whacamole import __version__
 from whacamole.dataset import DatasetLayout, read_json, write_index
 from whacamole.dataset.files import write_json
 from whacamole.errors import DatasetError
@@ -132,7 +133,7 @@ def _facts(recipe: Recipe) -> dict[str, Any]:
     body = body_of(recipe)
     return {
         "generator": "whacamole",
-        "versions": {name: version(name) for name in ("whacamole", "bpy", "numpy", "scipy")},
+        "versions": {"whacamole": __version__, **{name: version(name) for name in ("bpy", "numpy", "scipy")}},
         "seed": recipe.seed,
         "recipe": recipe.save_as_dict(),
         "body_model": {"name": body.name, "sha256": body.sha256},

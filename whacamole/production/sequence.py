@@ -15,6 +15,7 @@ from whacamole.errors import DatasetError, MotionError, TakeError
 from whacamole.motion import Motion, read_motion
 from whacamole.production.filming import camera_neighbours, plan_camera
 from whacamole.production.labelling import write_labels
+from whacamole.production.preview import write_preview
 from whacamole.production.worklist import SequenceOrder, motion_checksum
 from whacamole.recipe import Recipe
 from whacamole.seeds import generator
@@ -77,6 +78,8 @@ def _make_in(
             seed=recipe.seed,
             shot_index=order.shot_index,
             textures=work / "textures",
+            stages=recipe.stages,
+            companions=[read_motion(file) for file in order.companions],
         )
     except TakeError as error:
         raise TakeError(f"{motion.path}: {error}") from error
@@ -86,7 +89,10 @@ def _make_in(
     job.save(work / "job")
     say("step", name="render", frames=take.num_frames)
     run_job(
-        work / "job", threads=threads, device=device, on_frame=lambda frame: say("frame", index=int(frame))
+        work / "job",
+        threads=threads,
+        device=device,
+        on_frame=lambda frame: say("frame", index=frame),
     )
     say("step", name="label", frames=take.num_frames)
     shutil.rmtree(sequence.folder, ignore_errors=True)

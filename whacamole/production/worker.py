@@ -9,10 +9,9 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from render_jobs.processes import die_with_parent
-
 from camera_rigs import PlanError
-from render_jobs import RenderFailed, RenderJobError
+from render_jobs import RenderJobError, WorkerError
+from render_jobs.processes import die_with_parent
 from whacamole.errors import WhacamoleError
 from whacamole.production.sequence import make_sequence
 from whacamole.production.worklist import SequenceOrder
@@ -36,7 +35,7 @@ def main(arguments: list[str]) -> int:
     order = SequenceOrder.from_dict(value)
     try:
         make_sequence(order, say, threads=value["threads"], device=value["device"])
-    except RenderFailed as error:
+    except WorkerError as error:
         say("failed", error=str(error), again=True)
         return 1
     except (WhacamoleError, RenderJobError, PlanError) as error:

@@ -9,8 +9,9 @@ from whacamole.dataset.files import sha256_of
 from whacamole.errors import DatasetError
 from whacamole.motion import MotionFile, embedded_motions, find_motions
 from whacamole.recipe import Recipe
+from whacamole.seeds import generator, stable_hash
 
-__all__ = ["SequenceOrder", "Worklist", "failure_note", "motion_checksum", "work_of"]
+__all__ = ["SequenceOrder", "Worklist", "companions_of", "failure_note", "motion_checksum", "work_of"]
 
 
 @dataclass(frozen=True)
@@ -23,6 +24,7 @@ class SequenceOrder:
         shot_index: the how-manieth sequence of this motion.
         root: the dataset's folder.
         recipe: what is made.
+        companions: motions of further people in the scene.
     """
 
     sequence_id: str
@@ -30,16 +32,14 @@ class SequenceOrder:
     shot_index: int
     root: Path
     recipe: Recipe
+    companions: tuple[MotionFile, ...] = ()
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain values for JSON."""
         return {
             "sequence_id": self.sequence_id,
-            "motion": {
-                "id": self.motion.id,
-                "paths": [str(path) for path in self.motion.paths],
-                "source": self.motion.source,
-            },
+            "motion": _file_as_dict(self.motion),
+            "companions": [_file_as_dict(file) for file in self.companions],
             "shot_index": self.shot_index,
             "root": str(self.root),
             "recipe": self.recipe.save_as_dict(),
@@ -48,14 +48,10 @@ class SequenceOrder:
     @classmethod
     def from_dict(cls, value: dict[str, Any]) -> Self:
         """Return the order that :meth:`as_dict` wrote."""
-        motion = value["motion"]
         return cls(
             sequence_id=value["sequence_id"],
-            motion=MotionFile(
-                id=motion["id"],
-                paths=tuple(Path(path) for path in motion["paths"]),
-                source=motion["source"],
-            ),
+            motion=_file_from_dict(value["motion"]),
+            companions=tuple(_file_from_dict(file) for file in value["companions"]),
             shot_index=value["shot_index"],
             root=Path(value["root"]),
             recipe=Recipe.model_validate(value["recipe"]),
@@ -88,7 +84,9 @@ def work_of(recipe: Recipe, root: Path) -> Worklist:
     files = find_motions(recipe.motions if recipe.motions is not None else embedded_motions())
     usable = [file for file in files if file.problem is None]
     orders = [
-        SequenceOrder(f"{file.id}-{shot:02d}", file, shot, root, recipe)
+        SequenceOrder(
+            f"{file.id}-{shot:02d}", file, shot, root, recipe, companions_of(file, shot, usable, recipe)
+        )
         for shot in range(recipe.shots_per_motion)
         for file in usable
     ][: recipe.limit]
@@ -97,6 +95,37 @@ def work_of(recipe: Recipe, root: Path) -> Worklist:
         if order.sequence_id in finished:
             _check_same_motion(order)
     return Worklist(tuple(orders), finished, tuple(file for file in files if file.problem is not None))
+
+
+def companions_of(
+    motion: MotionFile, shot_index: int, usable: list[MotionFile], recipe: Recipe
+) -> tuple[MotionFile, ...]:
+    """Draw the motions of further people for a single person's sequence; a pair stays by itself.
+
+    Each candidate is ranked by a hash of its own id with the sequence's, so a motion added later displaces at
+    most one of them, and only where it ranks first.
+    """
+    fewest, most = recipe.people
+    if motion.num_people > 1 or most == 1:
+        return ()
+    count = int(generator(recipe.seed, motion.id, shot_index, "people").integers(fewest, most + 1)) - 1
+    needed = min(motion.num_frames or 0, recipe.frames + 2 if recipe.frames else motion.num_frames or 0)
+    fitting = [
+        file
+        for file in usable
+        if file.num_people == 1 and file.id != motion.id and (file.num_frames or 0) >= needed
+    ]
+    key = f"{recipe.seed}/{motion.id}/{shot_index}"
+    return tuple(sorted(fitting, key=lambda file: stable_hash(f"{key}/{file.id}"))[:count])
+
+
+def _file_as_dict(file: MotionFile) -> dict[str, Any]:
+    return {"id": file.id, "paths": [str(path) for path in file.paths], "source": file.source}
+
+
+def _file_from_dict(value: dict[str, Any]) -> MotionFile:
+    paths = tuple(Path(path) for path in value["paths"])
+    return MotionFile(id=value["id"], paths=paths, source=value["source"])
 
 
 def failure_note(order: SequenceOrder) -> Path:

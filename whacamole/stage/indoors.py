@@ -29,7 +29,7 @@ def living_room(rng: np.random.Generator, paths: Paths, folder: Path) -> Stage:
     materials = prop_materials(build, surfaces, rng)
     kinds = ("cabinet", "sofa", "table", "stool", "cabinet")
     furnish(build, floor, kinds, int(rng.integers(8, 13)), materials, rng, beyond=6.0, clearance=2.2)
-    lamps = ceiling_lamps(floor, height, float(rng.uniform(70.0, 110.0)), (1.0, 0.86, 0.7), 3.2)
+    lamps = ceiling_lamps(floor, height, float(rng.uniform(70.0, 110.0)), (1.0, 0.93, 0.84), 3.2)
     return build.stage("living-room", lamps, Environment(color=(0.5, 0.5, 0.5), strength=0.15))
 
 
@@ -44,7 +44,7 @@ def sports_hall(rng: np.random.Generator, paths: Paths, folder: Path) -> Stage:
     )  # fmt: skip
     materials = prop_materials(build, (("wood", 1.0), ("cloth", 0.9), ("concrete", 1.5)), rng)
     furnish(build, floor, ("bench", "crate", "cabinet"), int(rng.integers(8, 13)), materials, rng)
-    lamps = ceiling_lamps(floor, height, float(rng.uniform(260.0, 380.0)), (1.0, 0.97, 0.92), 5.0)
+    lamps = ceiling_lamps(floor, height, float(rng.uniform(260.0, 380.0)), (1.0, 0.98, 0.95), 5.0)
     return build.stage("sports-hall", lamps, Environment(color=(0.6, 0.65, 0.7), strength=0.15))
 
 

@@ -23,10 +23,10 @@ def plaza(rng: np.random.Generator, paths: Paths, folder: Path) -> Stage:
     build, floor = SetBuilder(folder), Floor(paths)
     texture = str(rng.choice(["paving", "paving", "asphalt", "concrete", "brick"]))
     ground(build, floor, texture, float(rng.uniform(2.4, 3.6)), rng)
-    house_fronts(build, floor, _some_sides(rng, 0.7), rng)
-    furnish(build, floor, STREET_FURNITURE, int(rng.integers(9, 16)), _masonry(build, rng), rng)
     sun, sky = daylight(rng, (22.0, 62.0))
-    return build.stage("plaza", (sun,), sky)
+    house_fronts(build, floor, _some_sides(rng, 0.8), rng, sun)
+    furnish(build, floor, STREET_FURNITURE, int(rng.integers(9, 16)), _masonry(build, rng), rng)
+    return build.stage("plaza", (sun,), sky, exposure=0.6)
 
 
 def park(rng: np.random.Generator, paths: Paths, folder: Path) -> Stage:
@@ -43,19 +43,19 @@ def park(rng: np.random.Generator, paths: Paths, folder: Path) -> Stage:
     )
     plant_trees(build, floor, int(rng.integers(8, 14)), rng, beyond=14.0)
     sun, sky = daylight(rng, (25.0, 65.0))
-    return build.stage("park", (sun,), sky)
+    return build.stage("park", (sun,), sky, exposure=0.7)
 
 
 def market(rng: np.random.Generator, paths: Paths, folder: Path) -> Stage:
     """A lane of stalls between houses in the low light of morning or evening."""
     build, floor = SetBuilder(folder), Floor(paths)
     ground(build, floor, str(rng.choice(["brick", "paving", "concrete"])), float(rng.uniform(2.0, 3.0)), rng)
-    house_fronts(build, floor, _some_sides(rng, 0.9), rng)
+    sun, sky = daylight(rng, (12.0, 28.0))
+    house_fronts(build, floor, _some_sides(rng, 0.9), rng, sun)
     surfaces = (("cloth", 1.0), ("cloth", 0.7), ("wood", 1.0), ("cloth", 1.3), ("wood", 0.7))
     kinds = ("stall", "stall", "crate", "barrel", "crate", "column")
     furnish(build, floor, kinds, int(rng.integers(14, 22)), prop_materials(build, surfaces, rng), rng)
-    sun, sky = daylight(rng, (12.0, 28.0))
-    return build.stage("market", (sun,), sky)
+    return build.stage("market", (sun,), sky, exposure=0.9)
 
 
 def courtyard(rng: np.random.Generator, paths: Paths, folder: Path) -> Stage:
@@ -103,7 +103,7 @@ def night_street(rng: np.random.Generator, paths: Paths, folder: Path) -> Stage:
     ground(build, floor, str(rng.choice(["asphalt", "paving"])), float(rng.uniform(2.4, 3.4)), rng)
     house_fronts(build, floor, _some_sides(rng, 0.8), rng)
     furnish(build, floor, STREET_FURNITURE, int(rng.integers(8, 14)), _masonry(build, rng), rng)
-    warm = (1.0, float(rng.uniform(0.72, 0.86)), float(rng.uniform(0.45, 0.62)))
+    warm = (1.0, float(rng.uniform(0.84, 0.93)), float(rng.uniform(0.66, 0.8)))
     night = Environment(kind="color", color=(0.10, 0.13, 0.22), strength=0.6)
     return build.stage("night-street", _street_lamps(build, floor, warm, rng), night, exposure=0.6)
 

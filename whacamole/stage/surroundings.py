@@ -17,11 +17,20 @@ FRONT_DISTANCE = (13.0, 21.0)
 FRONT_KINDS = 4
 """Different house fronts on one square."""
 
+MOST_STOREYS = 4
+"""Of a house."""
+
+OUTWARD = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
+"""Direction of each side."""
+
+HORIZON = 160.0
+"""How far the ground reaches beyond the people's paths [m]: past the farthest house."""
+
 
 def ground(build: SetBuilder, floor: Floor, texture: str, metres: float, rng: np.random.Generator) -> None:
     """Lay the ground far beyond everything that stands on it."""
     material = build.material("ground", TEXTURES[texture], rng, metres=metres)
-    build.add("ground", ground_grid(floor.reach + FRONT_DISTANCE[1] + 40.0), material)
+    build.add("ground", ground_grid(floor.reach + HORIZON), material)
 
 
 def daylight(rng: np.random.Generator, elevation: tuple[float, float]) -> tuple[Sun, Environment]:
@@ -33,37 +42,50 @@ def daylight(rng: np.random.Generator, elevation: tuple[float, float]) -> tuple[
         direction=(-np.cos(up) * np.cos(around), -np.cos(up) * np.sin(around), -np.sin(up)),
         strength=float(rng.uniform(2.2, 3.6)),
         angle=1.0,
-        color=(1.0, 0.97 - 0.12 * warmth, 0.92 - 0.3 * warmth),
+        color=(1.0, 0.97 - 0.07 * warmth, 0.92 - 0.2 * warmth),
     )
     sky = Environment(
-        kind="sky", sun_elevation=height, rotation=azimuth, strength=float(rng.uniform(0.8, 1.2))
+        kind="sky", sun_elevation=height, rotation=azimuth, strength=float(rng.uniform(1.0, 1.5))
     )
     return sun, sky
 
 
-def house_fronts(build: SetBuilder, floor: Floor, sides: NDArray[np.bool_], rng: np.random.Generator) -> None:
-    """Line the given sides (+x, +y, −x, −y) with houses of varied height."""
+def house_fronts(
+    build: SetBuilder,
+    floor: Floor,
+    sides: NDArray[np.bool_],
+    rng: np.random.Generator,
+    sun: Sun | None = None,
+) -> None:
+    """Line the given sides (+x, +y, −x, −y) with houses of varied height.
+
+    Towards the ``sun`` they stand farther off, so that their shadow ends before it reaches the people.
+    """
     storeys = [float(rng.uniform(2.9, 3.4)) for _ in range(FRONT_KINDS)]
     fronts = [
         build.material(f"front-{index}", TEXTURES["facade"], rng, metres=storey, roughness=0.7)
         for index, storey in enumerate(storeys)
     ]
+    shadow = np.zeros(2) if sun is None else -np.asarray(sun.direction[:2]) / -sun.direction[2] * max(storeys)
     for side in np.flatnonzero(sides):
-        _street_side(build, floor, int(side), storeys, fronts, rng)
+        towards = shadow @ OUTWARD[side] * MOST_STOREYS
+        _street_side(build, floor, int(side), max(0.0, float(towards)), storeys, fronts, rng)
 
 
 def _street_side(
     build: SetBuilder,
     floor: Floor,
     side: int,
+    farther: float,
     storeys: list[float],
     fronts: list[Material],
     rng: np.random.Generator,
 ) -> None:
     center, half = (floor.low + floor.high) / 2.0, (floor.high - floor.low) / 2.0
     axis, sign = side % 2, 1.0 if side < 2 else -1.0
-    distance = half[axis] + rng.uniform(*FRONT_DISTANCE)
-    along, stop = -half[1 - axis] - 16.0, half[1 - axis] + 16.0
+    distance = half[axis] + rng.uniform(*FRONT_DISTANCE) + farther
+    spread = 16.0 + 0.6 * farther
+    along, stop = -half[1 - axis] - spread, half[1 - axis] + spread
     index = 0
     while along < stop:
         kind = int(rng.integers(FRONT_KINDS))
@@ -72,7 +94,7 @@ def _street_side(
         place[axis] += sign * (distance + depth / 2.0)
         place[1 - axis] += along + width / 2.0
         footprint = (depth, width) if axis == 0 else (width, depth)
-        height = storeys[kind] * int(rng.integers(2, 5))
+        height = storeys[kind] * int(rng.integers(2, MOST_STOREYS + 1))
         base = (float(place[0]), float(place[1]), 0.0)
         build.add_box(f"house-{side}-{index}", base, (*footprint, height), fronts[kind])
         along += width

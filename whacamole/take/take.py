@@ -1,5 +1,6 @@
-"""Staging: from a motion and seeds to a scene that can be filmed."""
+"""Staging: from motions and seeds to a scene that can be filmed."""
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -13,9 +14,14 @@ from whacamole.motion import Motion
 from whacamole.seeds import generator
 from whacamole.stage import Stage, stage_rand
 from whacamole.take.casting import Role, cast_role
+from whacamole.take.crowd import Footprint, place_crowd
 from whacamole.take.placing import body_params, choose_window, ground_shift, path_scale, scene_transform
 
 __all__ = ["Performer", "Take", "stage_take"]
+
+
+Draw = Callable[[str], np.random.Generator]
+"""Gives the generator for a purpose."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,13 +30,15 @@ class Performer:
 
     Attributes:
         track_id: the value of this person in masks and labels, from 1.
+        motion_id: where the movement comes from.
         role: who plays: gender, shape, looks.
         params: SMPL-X parameters in the world frame, T + 2 frames.
         posed: body vertices (T + 2, V, 3) and joints (T + 2, 55, 3) in the world frame [m].
-        meshes: what is drawn of this person, each with T + 2 frames of vertices.
+        meshes: what is drawn of this person, each with T + 2 frames of vertices; the body first.
     """
 
     track_id: int
+    motion_id: str
     role: Role
     params: BodyParams
     posed: Posed
@@ -42,7 +50,7 @@ class Take:
     """A staged scene of T frames.
 
     Attributes:
-        motion: where the movement comes from.
+        motion: the motion that gives the take its name.
         first_frame: the motion's frame that became frame 0.
         performers: the people, in the order of their track ids.
         stage: the place.
@@ -74,6 +82,17 @@ class Take:
         )
 
 
+@dataclass(frozen=True, eq=False)
+class _Scene:
+    """The people of one motion, standing on the ground where the motion puts them."""
+
+    motion: Motion
+    first: int
+    roles: list[Role]
+    params: list[BodyParams]
+    posed: list[Posed]
+
+
 def stage_take(
     motion: Motion,
     body: BodyModel,
@@ -83,6 +102,7 @@ def stage_take(
     shot_index: int,
     textures: Path,
     stages: tuple[str, ...] = (),
+    companions: Sequence[Motion] = (),
 ) -> Take:
     """Stage sequence ``shot_index`` of ``motion``.
 
@@ -91,18 +111,47 @@ def stage_take(
         seed: of the dataset.
         textures: folder for texture files that the stage paints.
         stages: names of stages to draw from; none: all.
+        companions: motions of further people, unrelated to the first; those that find no free place stay out.
 
     Raises:
-        TakeError: the motion is too short.
+        TakeError: a motion is too short.
     """
 
     def rng(purpose: str) -> np.random.Generator:
         return generator(seed, motion.id, shot_index, purpose)
 
-    window = choose_window(motion.num_frames, frames, rng("window"))
+    scene = _scene(motion, body, frames, rng, "")
+    length = len(scene.posed[0].joints) - 2
+    others = [
+        _scene(other, body, length, rng, f" companion {number}") for number, other in enumerate(companions)
+    ]
+    placements = place_crowd(
+        [Footprint.of(posed) for posed in scene.posed],
+        [Footprint.of(other.posed[0]) for other in others],
+        rng("crowd"),
+    )
+    people = [
+        (scene.motion.id, *person) for person in zip(scene.roles, scene.params, scene.posed, strict=True)
+    ]
+    for other, placement in zip(others, placements, strict=True):
+        if placement is not None:
+            j0 = body.rest_joints(other.params[0].betas, other.params[0].expression)[..., 0, :]
+            moved = other.params[0].transformed(placement.as_transform(), j0)
+            people.append((other.motion.id, other.roles[0], moved, body.pose(moved)))
+    performers = tuple(
+        Performer(number, motion_id, role, params, posed, role.meshes(body, posed, number))
+        for number, (motion_id, role, params, posed) in enumerate(people, start=1)
+    )
+    paths = np.concatenate([person.posed.joints[:, 0, :2] for person in performers])
+    return Take(motion, scene.first, performers, stage_rand(rng("stage"), paths, textures, stages))
+
+
+def _scene(motion: Motion, body: BodyModel, frames: int, rng: Draw, purpose: str) -> _Scene:
+    """Cast the people of a motion, cut its window, stand them on the ground in the middle of the stage."""
+    window = choose_window(motion.num_frames, frames, rng(f"window{purpose}"))
     roles = [
-        cast_role(rng(f"cast {index}"), person, body, interactive=motion.interactive)
-        for index, person in enumerate(motion.people)
+        cast_role(rng(f"cast {number}{purpose}"), person, body, interactive=motion.interactive)
+        for number, person in enumerate(motion.people)
     ]
     whole = [
         body_params(person, body, role.betas, role.relaxed_hands, path_scale(motion, body, role.betas))
@@ -110,11 +159,16 @@ def stage_take(
     ]
     # Rounded as the label file will hold them before anything is posed: labels reproduce the pixels.
     filmed = [stored_params(part.slice(window.start, window.stop)) for part in whole]
-    params = _placed(filmed, body, rng("place"))
-    performers = _performed(params, roles, body)
-    paths = np.concatenate([person.posed.joints[:, 0, :2] for person in performers])
-    stage = stage_rand(rng("stage"), paths, textures, stages)
-    return Take(motion, window.start + 1, performers, stage)
+    placed = _placed(filmed, body, rng(f"place{purpose}"))
+    floating = [body.pose(person) for person in placed]
+    shift = np.array([0.0, 0.0, ground_shift(floating)])
+    return _Scene(
+        motion,
+        window.start + 1,
+        roles,
+        [replace(person, transl=person.transl + shift) for person in placed],
+        [Posed(shape.vertices + shift.astype(np.float32), shape.joints + shift) for shape in floating],
+    )
 
 
 def _placed(params: list[BodyParams], body: BodyModel, rng: np.random.Generator) -> list[BodyParams]:
@@ -123,16 +177,3 @@ def _placed(params: list[BodyParams], body: BodyModel, rng: np.random.Generator)
     pelvis = np.stack([person.transl + j0 for person, j0 in zip(params, rest, strict=True)])
     transform = scene_transform(pelvis, float(rng.uniform(0.0, 2.0 * np.pi)))
     return [person.transformed(transform, j0) for person, j0 in zip(params, rest, strict=True)]
-
-
-def _performed(params: list[BodyParams], roles: list[Role], body: BodyModel) -> tuple[Performer, ...]:
-    """Pose and dress everybody, and stand the scene on the ground by one vertical shift."""
-    floating = [body.pose(person) for person in params]
-    shift = np.array([0.0, 0.0, ground_shift(floating)])
-    performers = []
-    for index, (person, role, shape) in enumerate(zip(params, roles, floating, strict=True)):
-        standing = Posed(shape.vertices + shift.astype(np.float32), shape.joints + shift)
-        meshes = role.meshes(body, standing, index + 1)
-        moved = replace(person, transl=person.transl + shift)
-        performers.append(Performer(index + 1, role, moved, standing, meshes))
-    return tuple(performers)
