@@ -29,6 +29,7 @@ class JobResult:
         frames: the number of frames that this call rendered; those already there are not counted.
         seconds: wall time of the call.
         frame_seconds: what each frame took in the renderer.
+        frame_cpu_seconds: the same, as CPU time of all threads: steadier where other work shares the machine.
         devices: what rendered, for people to read; empty where nothing had to be rendered.
         peak_memory_mb: largest resident memory of the child that was seen.
         log: the job's log.
@@ -37,6 +38,7 @@ class JobResult:
     frames: int
     seconds: float
     frame_seconds: dict[int, float]
+    frame_cpu_seconds: dict[int, float]
     devices: str
     peak_memory_mb: float
     log: Path
@@ -94,6 +96,7 @@ def run_job(
         frames=len(progress.frame_seconds),
         seconds=time.monotonic() - began,
         frame_seconds=progress.frame_seconds,
+        frame_cpu_seconds=progress.frame_cpu_seconds,
         devices=progress.devices,
         peak_memory_mb=peak,
         log=log,
@@ -147,6 +150,7 @@ class _Progress:
 
     def __init__(self, on_frame: OnFrame | None) -> None:
         self.frame_seconds: dict[int, float] = {}
+        self.frame_cpu_seconds: dict[int, float] = {}
         self.devices = ""
         self.error = ""
         self._on_frame = on_frame
@@ -158,6 +162,7 @@ class _Progress:
                 self.devices = event["devices"]
             case "frame":
                 self.frame_seconds[event["frame"]] = event["seconds"]
+                self.frame_cpu_seconds[event["frame"]] = event["cpu_seconds"]
                 if self._on_frame is not None:
                     self._on_frame(event["frame"])
             case "error":

@@ -130,7 +130,9 @@ def _work(options: argparse.Namespace, reporter: Reporter) -> None:
             device=device,
             threads=options.threads,
             on_start=lambda devices: reporter.send("start", devices=devices, frames=len(missing)),
-            on_frame=lambda frame, seconds: reporter.send("frame", frame=frame, seconds=round(seconds, 4)),
+            on_frame=lambda frame, seconds, cpu_seconds: reporter.send(
+                "frame", frame=frame, seconds=round(seconds, 4), cpu_seconds=round(cpu_seconds, 4)
+            ),
             abort=reporter.abort,
         )
     finally:

@@ -27,7 +27,7 @@ def render(
     device: DeviceChoice,
     threads: int,
     on_start: Callable[[str], None],
-    on_frame: Callable[[int, float], None],
+    on_frame: Callable[[int, float, float], None],
     abort: Callable[[BaseException], NoReturn],
 ) -> None:
     """Render frames of a job with Cycles.
@@ -40,7 +40,7 @@ def render(
         device: where to render.
         threads: CPU threads; 0 takes all cores.
         on_start: told the devices once the scene stands.
-        on_frame: told the number and the seconds of each frame that is in its place.
+        on_frame: told of each frame that is in its place: number, seconds, CPU seconds of all threads.
         abort: ends the process; used where an exception would be lost.
 
     Raises:
@@ -50,15 +50,15 @@ def render(
     """
     on_start(build_scene(job, scratch, device, threads))
     slots = threading.Semaphore(FRAMES_WAITING)
-    began = time.perf_counter()
+    began, cpu_began = time.perf_counter(), time.process_time()
 
-    def finish(raw: RawFrame, seconds: float) -> None:
+    def finish(raw: RawFrame, seconds: float, cpu_seconds: float) -> None:
         try:
             publish_frame(out, raw.frame, _writers(job, raw), job.image_format)
             for path in (raw.rgb, raw.labels):
                 if path is not None:
                     path.unlink(missing_ok=True)
-            on_frame(raw.frame, seconds)
+            on_frame(raw.frame, seconds, cpu_seconds)
         except BaseException as error:
             abort(error)
         finally:
@@ -67,11 +67,11 @@ def render(
     with ThreadPoolExecutor(1, "encode") as encoder:
 
         def hand_over(raw: RawFrame) -> None:
-            nonlocal began
+            nonlocal began, cpu_began
             slots.acquire()
-            now = time.perf_counter()
-            encoder.submit(finish, raw, now - began)
-            began = now
+            now, cpu_now = time.perf_counter(), time.process_time()
+            encoder.submit(finish, raw, now - began, cpu_now - cpu_began)
+            began, cpu_began = now, cpu_now
 
         render_frames(job, frames, scratch, hand_over, abort)
 
