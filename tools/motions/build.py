@@ -37,13 +37,14 @@ GRAIN = 1.0 / 8192.0
 
 @dataclass(frozen=True)
 class Single:
-    """One person: the clips played one after the other."""
+    """One person: the clips played one after the other, without the first ``skip`` seconds."""
 
     name: str
     about: str
     clips: tuple[str, ...]
     straight: bool = False
     on_feet: bool = True
+    skip: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -86,7 +87,7 @@ SINGLES = (
     Single("punch", "two steps and a punch", ("humanoid3d_punch",)),
     Single("spinkick", "a jumping spin kick, twice", ("humanoid3d_spinkick",) * 2),
     Single("cartwheel", "a cartwheel", ("humanoid3d_cartwheel",), on_feet=False),
-    Single("roll", "a forward roll", ("humanoid3d_roll",), on_feet=False),
+    Single("roll", "a forward roll", ("humanoid3d_roll",), on_feet=False, skip=0.2),
     Single("crawl", "crawling, twice", ("humanoid3d_crawl",) * 2, on_feet=False),
     Single("getup_back", "getting up from the back", ("humanoid3d_getup_faceup",), on_feet=False),
     Single("getup_front", "getting up from the front", ("humanoid3d_getup_facedown",), on_feet=False),
@@ -118,7 +119,8 @@ def main() -> None:
             return chain([load(source / f"{name}.txt", WORK_FPS) for name in clips], straight=straight)
 
         for single in SINGLES:
-            person = _thin(retarget(get(single.clips, single.straight), on_feet=single.on_feet))
+            person = retarget(get(single.clips, single.straight), on_feet=single.on_feet)
+            person = _thin(person, round(single.skip * WORK_FPS))
             path = OUT / f"{single.name}.npz"
             _write_amass(path, person)
             rows.append((single.name, single.about, single.clips, [path]))
@@ -133,9 +135,9 @@ def main() -> None:
     sys.stdout.write(f"{sum(p.stat().st_size for p in OUT.iterdir()) / 1e3:.0f} kB in {OUT}\n")
 
 
-def _thin(person: Person) -> Person:
+def _thin(person: Person, skip: int = 0) -> Person:
     step = round(WORK_FPS / FPS)
-    return Person(person.pose[::step], person.pelvis[::step], FPS)
+    return Person(person.pose[skip::step], person.pelvis[skip::step], FPS)
 
 
 def _pair(pair: Pair, get: Callable[[tuple[str, ...], bool], Clip]) -> tuple[Person, Person]:

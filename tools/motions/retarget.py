@@ -17,7 +17,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d
+from scipy.ndimage import gaussian_filter1d, maximum_filter1d
 from scipy.spatial.transform import Rotation
 
 from tools.motions.feet import correction, travel
@@ -132,7 +132,7 @@ def _hip(world: dict[str, Rotation], pelvis: FloatArray, side: str) -> FloatArra
 def _overreach(
     world: dict[str, Rotation], pelvis: FloatArray, ankles: dict[str, FloatArray], fps: float
 ) -> FloatArray:
-    """How far the pelvis must sink ``(T,3)`` for both feet to be reached, smooth over a tenth of a second."""
+    """How far the pelvis must sink ``(T,3)`` for both feet to be reached, smoothly."""
     sink = np.zeros(len(pelvis))
     for side in SIDES:
         length = sum(
@@ -143,8 +143,13 @@ def _overreach(
         level = np.hypot(gap[:, 0], gap[:, 2])
         height = np.sqrt(np.maximum((REACH * length) ** 2 - level**2, 0.01))
         sink = np.maximum(sink, np.where(gap[:, 1] > 0.3, gap[:, 1] - height, 0.0))
-    smooth = gaussian_filter1d(sink, 0.05 * fps, mode="nearest")
-    return np.outer(np.maximum(sink, smooth), [0.0, 1.0, 0.0])
+    return np.outer(_envelope(sink, 0.12 * fps), [0.0, 1.0, 0.0])
+
+
+def _envelope(values: FloatArray, reach: float) -> FloatArray:
+    """A smooth curve nowhere below ``values (T,)`` that knows of a peak ``reach`` frames ahead."""
+    highest = maximum_filter1d(values, 2 * round(reach) + 1, mode="nearest")
+    return np.asarray(gaussian_filter1d(highest, 0.5 * round(reach), mode="nearest", truncate=2.0))
 
 
 def _leg(
@@ -180,10 +185,10 @@ def _leg(
 def _toes(foot: Rotation, ankle: FloatArray, fps: float) -> Rotation:
     """Toes bend up by what the heel lifts, while the ball is near the floor."""
     ahead = foot.apply([0.0, 0.0, 1.0])
-    pitch = np.clip(np.arcsin(np.clip(-ahead[:, 1], -1.0, 1.0)), 0.0, np.radians(50.0))
+    pitch = np.clip(np.arcsin(np.clip(-ahead[:, 1], -1.0, 1.0)), 0.0, np.radians(60.0))
     ball = ankle + foot.apply([0.0, -SOLE, 0.135])
-    near = np.clip(1.0 - (ball[:, 1] - 0.02) / 0.06, 0.0, 1.0)
-    bend = gaussian_filter1d(pitch * near, 0.04 * fps, mode="nearest")
+    near = np.clip(1.0 - (ball[:, 1] - 0.03) / 0.06, 0.0, 1.0)
+    bend = _envelope(pitch * near, 0.06 * fps)
     return Rotation.from_rotvec(np.outer(bend, [-1.0, 0.0, 0.0]))
 
 
@@ -202,11 +207,7 @@ def _settle(world: dict[str, Rotation], pelvis: FloatArray, fps: float) -> Perso
     joints, turns = pose_skeleton(pose[:, 0], pose[:, 1:], pelvis)
     low = (touch_points(joints, turns)[..., 1] - TOUCH_RADII).min(axis=1)
     lift = np.maximum(-low, 0.0)
-    lift = (
-        np.maximum(lift, gaussian_filter1d(lift, 0.08 * fps, mode="nearest"))
-        if lift.max() > 0.005
-        else 0.0 * lift
-    )
+    lift = np.maximum(lift, gaussian_filter1d(lift, 0.06 * fps, mode="nearest"))
     return Person(pose, pelvis + lift[:, None] * np.array([0.0, 1.0, 0.0]), fps)
 
 

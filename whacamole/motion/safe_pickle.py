@@ -1,7 +1,7 @@
 """Unpickling that cannot execute anything.
 
 Some motion formats are pickles. The standard unpickler imports and calls whatever the file names; this one
-knows eight names, all answered by inert stand-ins of this module, and refuses every other. NumPy's own
+knows a dozen names, all answered by inert stand-ins of this module, and refuses every other. NumPy's own
 classes are never called from the stream (``ndarray((10**12,))`` is a valid pickle and takes all memory): an
 array becomes a read-only view of the bytes that the file really holds.
 """
@@ -105,6 +105,10 @@ def _encode(text: object, encoding: object) -> bytes:
     return text.encode("latin1")
 
 
+def _empty_bytes() -> bytes:
+    return b""
+
+
 def _no_type(*_: object) -> None:
     raise UnsafePickleError("it calls numpy.ndarray directly")
 
@@ -113,6 +117,9 @@ _NAMES: dict[tuple[str, str], Callable[..., Any]] = {
     ("numpy", "ndarray"): _no_type,
     ("numpy", "dtype"): _DType,
     ("_codecs", "encode"): _encode,
+    # How the old protocols write bytes without any content.
+    ("__builtin__", "bytes"): _empty_bytes,
+    ("builtins", "bytes"): _empty_bytes,
     ("collections", "OrderedDict"): dict,
     **{
         (f"numpy.{core}.{module}", name): stand_in
