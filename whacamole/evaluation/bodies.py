@@ -48,8 +48,8 @@ class Body(Protocol):
 
     kind: BodyKind
     extras: Mapping[str, Any]
-    scored: IntArray
-    """Vertices that PVE is the mean over, as rows of :meth:`local_vertices`."""
+    scored: IntArray | slice
+    """Vertices that PVE is the mean over, as rows of :meth:`local_vertices`; a slice costs no copy."""
     feet: IntArray
     """Four foot points, as rows of :meth:`local_vertices`."""
 
@@ -80,7 +80,8 @@ class SmplxBody:
         V = model.num_vertices
         feet = foot_points(model.v_template, model.weights, self.kind)
         self.topology = f"smplx-{V}" if sample is None else f"smplx-{V}/{sample}"
-        self.extras, self.scored, self.feet = model.extras, np.arange(V), feet
+        self.extras, self.feet = model.extras, feet
+        self.scored: IntArray | slice = slice(None)
         if sample is not None and sample < V:
             even = np.linspace(0, V - 1, sample).round().astype(np.intp)
             support = np.unique(model.arrays.joint_regressor.nonzero()[1])
@@ -125,7 +126,7 @@ class SmplBody:
         self.model, self.extras = model, model.extras
         self.kind: BodyKind = "smpl" if len(model.parents) == 24 else "smplh"
         self.topology = f"smpl-{len(model.v_template)}"  # SMPL-H has SMPL's vertices
-        self.scored = np.arange(len(model.v_template))
+        self.scored: IntArray | slice = slice(None)
         self.feet = foot_points(model.v_template, model.weights, self.kind)
 
     @property

@@ -88,9 +88,11 @@ def score_vertices(pair: Pair, protocol: Protocol, options: VertexOptions) -> Ve
             placed_joints = _turned(joints[0], turn)
             root = root_of(_turned(sets[0], turn), pair.joint_set, protocol.root)
             gap = root - root_of(sets[1], pair.joint_set, protocol.root)
-            surface, target = moved[:, scored], ours[:, scored]
-            scores.errors["t_pve"][at] = point_error(surface + shift[:, None].astype(np.float32), target)
-            scores.errors["pve"][at] = point_error(surface - gap[:, None].astype(np.float32), target)
+            target = ours[:, scored]
+            for key, by in (("t_pve", shift), ("pve", -gap)):
+                scores.errors[key][at] = point_error(
+                    moved[:, scored] + by[:, None].astype(np.float32), target
+                )
             for key, regions in parts.items():
                 scores.errors[key][at] = _part_error(moved, ours, placed_joints, joints[1], regions)
     scores.feet = feet[0], feet[1]

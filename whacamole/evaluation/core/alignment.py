@@ -58,37 +58,38 @@ def umeyama(
     """
     if source.shape != target.shape or source.shape[-1:] != (3,) or source.shape[-2] == 0:
         raise ValueError(f"umeyama: {source.shape} and {target.shape}, expected two arrays (…, N ≥ 1, 3)")
-    share = _shares(source, weights)
-    mean_source = np.einsum("...n,...ni->...i", share, source, dtype=np.float64)
-    mean_target = np.einsum("...n,...ni->...i", share, target, dtype=np.float64)
-    from_mean = source - mean_source[..., None, :].astype(source.dtype)
-    to_mean = target - mean_target[..., None, :].astype(target.dtype)
-    weighted = from_mean * share[..., None].astype(from_mean.dtype)
-    covariance = (np.swapaxes(to_mean, -1, -2) @ weighted).astype(np.float64)
+    # Products, not sums over an axis: on the short axes of points they are several times faster in NumPy.
+    share = _shares(source, weights).astype(source.dtype)
+    mean_source, mean_target = share @ source, share @ target
+    from_mean, to_mean = source - mean_source, target - mean_target
+    weighted = from_mean if weights is None else from_mean * np.swapaxes(share, -1, -2)
+    each = 1.0 / source.shape[-2] if weights is None else 1.0
+    covariance = each * (np.swapaxes(to_mean, -1, -2) @ weighted).astype(np.float64)
     U, D, Vt = np.linalg.svd(covariance)
     S = np.ones_like(D)
     S[..., 2] = np.where(np.linalg.det(U) * np.linalg.det(Vt) < 0.0, -1.0, 1.0)
     rotation = (U * S[..., None, :]) @ Vt
     if with_scale:
-        variance = np.einsum("...ni,...ni->...", weighted, from_mean, dtype=np.float64)
+        products = np.swapaxes(weighted, -1, -2) @ from_mean
+        variance = each * np.trace(products, axis1=-2, axis2=-1, dtype=np.float64)
         with np.errstate(invalid="ignore", divide="ignore"):
             scale = np.where(variance > 0.0, (D * S).sum(axis=-1) / variance, np.nan)
     else:
         scale = np.ones(D.shape[:-1])
-    moved = scale[..., None] * np.einsum("...ij,...j->...i", rotation, mean_source)
-    return Similarity(scale, rotation, mean_target - moved)
+    moved = scale[..., None] * (mean_source @ np.swapaxes(rotation, -1, -2))[..., 0, :]
+    return Similarity(scale, rotation, mean_target[..., 0, :] - moved)
 
 
 def _shares(points: FloatArray, weights: FloatArray | None) -> FloatArray:
-    """Each point's share of the whole (…, N), adding up to 1."""
+    """Each point's share of the whole, adding up to 1: (…, 1, N), or (1, N) if all are equal."""
     if weights is None:
-        return np.full(points.shape[:-1], 1.0 / points.shape[-2])
+        return np.full((1, points.shape[-2]), 1.0 / points.shape[-2])
     if weights.shape != points.shape[:-1]:
         raise ValueError(f"umeyama: weights {weights.shape} for points {points.shape}")
     total = weights.sum(axis=-1, keepdims=True)
     if not (total > 0.0).all():
         raise ValueError("umeyama: the weights of a point set add up to nothing")
-    return np.asarray(weights / total)
+    return np.asarray(weights / total)[..., None, :]
 
 
 def align(

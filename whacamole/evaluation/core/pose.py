@@ -15,8 +15,9 @@ MILLIMETRES = 1000.0
 def distances(prediction: FloatArray, truth: FloatArray) -> FloatArray:
     """‖prediction − truth‖ of points (…, 3) [m] → (…) [m]."""
     apart = prediction - truth
-    squared: FloatArray = np.einsum("...i,...i->...", apart, apart)
-    return np.sqrt(squared)
+    np.square(apart, out=apart)
+    squared: FloatArray = apart @ np.ones(3, apart.dtype)  # a product: sums over an axis of 3 are slow
+    return np.sqrt(squared, out=squared)
 
 
 def point_error(prediction: FloatArray, truth: FloatArray) -> FloatArray:
