@@ -3,8 +3,10 @@
 from whacamole.labels.camera import camera_arrays
 from whacamole.labels.contact import ContactLabels, model_parts
 from whacamole.labels.ground import ContactThresholds
+from whacamole.labels.overlay import OverlayStyle, overlay_frame
 from whacamole.labels.parts import PART_NAMES, BodyParts, parts_from_regions, skinning_parts
 from whacamole.labels.people import FrameImages, LabelledPerson, PeopleLabels
+from whacamole.labels.preview import preview_strip
 from whacamole.labels.raster import Raster, RasterMesh, rasterize, silhouette
 from whacamole.labels.sequence import SequenceLabels, label_sequence
 
@@ -15,6 +17,7 @@ __all__ = [
     "ContactThresholds",
     "FrameImages",
     "LabelledPerson",
+    "OverlayStyle",
     "PeopleLabels",
     "Raster",
     "RasterMesh",
@@ -22,7 +25,9 @@ __all__ = [
     "camera_arrays",
     "label_sequence",
     "model_parts",
+    "overlay_frame",
     "parts_from_regions",
+    "preview_strip",
     "rasterize",
     "silhouette",
     "skinning_parts",

@@ -146,7 +146,7 @@ class SkinSearch:
 
 
 def _square_distance(points: Float64s, corners: Float64s) -> tuple[Float64s, Float64s]:
-    """Squared distance ``(M,)`` of points ``(M, 3)`` to triangles ``(M, 3, 3)``, weights ``(M, 3)`` of the foot.
+    """Squared distance of points ``(M, 3)`` to triangles ``(M, 3, 3)``, and weights ``(M, 3)`` of the foot.
 
     The foot of the perpendicular if it falls inside, else the nearest of the closest points on the three
     sides, all from the six dot products of the triangle's frame.
