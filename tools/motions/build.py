@@ -31,6 +31,7 @@ from whacamole.motion.skeleton import forward as pose_skeleton
 OUT = Path(__file__).parents[2] / "whacamole" / "assets" / "motions"
 FOLDER = "pybullet_data/data/motions/"
 WORK_FPS, FPS = 60.0, 30.0
+LICENCE = "zlib (motion capture of the PyPI package pybullet 3.2.7, altered)"
 GRAIN = 1.0 / 8192.0
 """Stored values are rounded to this [rad, m]: 0.007 degrees, 0.12 mm. It halves the files."""
 
@@ -194,6 +195,7 @@ def _write_amass(path: Path, person: Person) -> None:
         trans=trans,
         betas=np.zeros(10, dtype=np.float32),
         gender=np.array("neutral"),
+        licence=np.array(LICENCE),
         surface_model_type=np.array("smplx"),
         mocap_frame_rate=np.array(FPS),
     )
@@ -208,6 +210,7 @@ def _write_dd100(path: Path, person: Person) -> None:
         transl=transl,
         betas=np.zeros((len(poses), 10), dtype=np.float32),
         gender=np.array("neutral"),
+        licence=np.array(LICENCE),
     )
 
 

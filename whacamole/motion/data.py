@@ -54,6 +54,7 @@ class Motion:
     "Near": the lowest point of a nominal skeleton touches z = 0, by one shift for the whole scene, so that a
     pair keeps its relative height. The exact contact depends on the body model and is made where the body is.
     ``interactive`` says that the people were captured together (a pair), so their relative place has meaning.
+    ``licence`` is what the file says in ``licence``, else its format's usual terms.
     ``up`` is the axis of the file that became z (such as ``"+y"``).
     """
 

@@ -41,7 +41,7 @@ def read_motion(
         id=file.id,
         source=reader.name,
         path=file.path,
-        licence=reader.licence,
+        licence=records[0].text("licence", reader.licence),
         convention=reader.up,
         stated=reader.up_stated,
         up=up,

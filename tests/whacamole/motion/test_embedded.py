@@ -51,6 +51,7 @@ def test_what_is_promised_is_there():
 
 def test_licence_and_provenance_cover_every_file():
     assert "zlib license" in (embedded_motions() / "LICENSE.txt").read_text()
+    assert all(motion(name).licence.startswith("zlib") for name in NAMES)
     provenance = (embedded_motions() / "PROVENANCE.md").read_text()
     listed = set(re.findall(r"`([0-9a-f]{16})`", provenance))
     files = embedded_motions().glob("*.npz")
