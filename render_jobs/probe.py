@@ -1,0 +1,140 @@
+"""What this machine can render with, found by trying in children: a missing driver aborts, it does not raise.
+
+``python -m render_jobs.probe NAME`` makes one try and prints what it found as JSON.
+"""
+
+from __future__ import annotations
+
+import importlib
+import json
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from render_jobs.processes import child_environment, die_with_parent
+
+PROBE_TIMEOUT_S = 120.0
+
+INSTALL = "apt-get install --no-install-recommends"
+BLENDER_LIBRARIES = "libx11-6 libxrender1 libxfixes3 libxi6 libxkbcommon0 libsm6 libgl1"
+"""Debian packages without which Blender's module cannot be imported."""
+OPENGL_LIBRARIES = "libegl1 libgl1 libgl1-mesa-dri"
+"""Debian packages for OpenGL without a display or a GPU."""
+
+REMEDIES: tuple[tuple[str, str], ...] = (
+    (r"No module named '?(bpy|pyrender|OpenGL)", "pip install --constraint constraints.txt whacamole"),
+    (r"numpy\.core\.multiarray failed|np\.infty", 'pip install "numpy>=1.26,<2"'),
+    (r"lib(X\w+|xkb\w+|SM|ICE|GL)\.so[.\d]*: cannot open", f"{INSTALL} {BLENDER_LIBRARIES}"),
+    (r"XRenderFindVisualFormat", f"{INSTALL} libxrender1, or set PYGLET_HEADLESS=1"),
+    (r"Unable to load EGL|Couldn't open libEGL|EGL: cannot open", f"{INSTALL} {OPENGL_LIBRARIES}"),
+    (r"Unable to load OpenGL|glGetError", f"{INSTALL} {OPENGL_LIBRARIES}"),
+    (r"EGL Error \(0x3001\)|err = 12289|eglInitialize", f"{INSTALL} libgl1-mesa-dri, or the GPU's driver"),
+    (r'Library "GLU" not found', 'pip install "pyglet>=2"'),
+    (r"OSMesaCreateContextAttribs", "pip install --no-deps PyOpenGL==3.1.10"),
+    (r"NoSuchDisplay|NullFunctionError", "set PYOPENGL_PLATFORM=egl and PYGLET_HEADLESS=1"),
+)
+"""What a failure says, and what to do about it; the first that matches counts."""
+
+UNKNOWN_REMEDY = "run `python -m render_jobs.probe {name}` to see all that it prints"
+
+
+@dataclass(frozen=True)
+class Probe:
+    """The outcome of one try.
+
+    Attributes:
+        name: what was tried.
+        works: whether it can be used.
+        found: what there is, or the failure in its own words.
+        remedy: a command or a hint, empty where it works.
+    """
+
+    name: str
+    works: bool
+    found: str
+    remedy: str = ""
+
+
+def probe(name: str, timeout: float = PROBE_TIMEOUT_S) -> Probe:
+    """Try one thing in a child process.
+
+    Args:
+        name: one of :data:`TRIES`.
+        timeout: seconds after which the try has failed.
+    """
+    command = [sys.executable, "-m", "render_jobs.probe", name, str(os.getpid())]
+    try:
+        child = subprocess.run(
+            command, capture_output=True, text=True, timeout=timeout, env=child_environment(), check=False
+        )
+    except subprocess.TimeoutExpired:
+        return Probe(name, False, f"no answer in {timeout:.0f} s", "update or reinstall the graphics driver")
+    if child.returncode == 0:
+        return Probe(name, True, json.loads(child.stdout.splitlines()[-1]))
+    return explain_failure(name, child.stderr + child.stdout, child.returncode)
+
+
+def explain_failure(name: str, output: str, status: int) -> Probe:
+    """Make a failed try's output into one line and a remedy.
+
+    Args:
+        name: what was tried.
+        output: everything it printed.
+        status: its exit status, negative for a signal.
+    """
+    lines = [line.strip() for line in output.splitlines() if line.strip()]
+    for pattern, remedy in REMEDIES:
+        for line in lines:
+            if re.search(pattern, line):
+                return Probe(name, False, line, remedy)
+    last = lines[-1] if lines else f"ended with status {status}"
+    return Probe(name, False, last, UNKNOWN_REMEDY.format(name=name))
+
+
+def probe_all() -> list[Probe]:
+    """Try everything there is to try; takes some seconds."""
+    return [probe(name) for name in TRIES]
+
+
+def _try_cycles() -> str:
+    bpy: Any = importlib.import_module("bpy")
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    gpu_names = importlib.import_module("render_jobs.blender.cycles").gpu_names
+    gpus = [f"{interface} {name}" for interface, names in gpu_names().items() for name in names]
+    return f"Blender {bpy.app.version_string}, on " + (", ".join(gpus) or "the CPU alone")
+
+
+def _try_workbench() -> str:
+    """Render a 16×16 image with the engine that needs OpenGL and nothing else; EEVEE needs the same."""
+    bpy: Any = importlib.import_module("bpy")
+    bpy.ops.wm.read_factory_settings(use_empty=False)
+    scene = bpy.context.scene
+    scene.render.engine = "BLENDER_WORKBENCH"
+    scene.render.resolution_x = scene.render.resolution_y = 16
+    bpy.ops.render.render()
+    gpu: Any = importlib.import_module("gpu")
+    return f"Blender's OpenGL engines, on {gpu.platform.renderer_get()}"
+
+
+TRIES: dict[str, Callable[[], str]] = {
+    "cycles": _try_cycles,
+    "workbench": _try_workbench,
+}
+"""What can be tried: each returns what it found, or raises, or takes the process with it."""
+
+
+def main(name: str, parent: str) -> None:
+    """Make one try in this process."""
+    die_with_parent(int(parent))
+    found = TRIES[name]()
+    sys.stdout.write("\n" + json.dumps(found) + "\n")
+    sys.stdout.flush()
+    os._exit(0)  # taking Blender down at the interpreter's exit can hang
+
+
+if __name__ == "__main__":
+    main(sys.argv[1], sys.argv[2] if len(sys.argv) > 2 else str(os.getppid()))

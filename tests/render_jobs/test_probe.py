@@ -1,0 +1,61 @@
+"""Probing: every known failure text leads to its remedy, and a try that aborts does no harm."""
+
+from __future__ import annotations
+
+import pytest
+
+from render_jobs.probe import TRIES, explain_failure, probe
+
+FAILURES = [
+    ("ImportError: libX11.so.6: cannot open shared object file: No such file or directory", "libx11-6"),
+    ("ImportError: libxkbcommon.so.0: cannot open shared object file: No such file", "libxkbcommon0"),
+    ("ImportError: libSM.so.6: cannot open shared object file: No such file or directory", "libsm6"),
+    ("ImportError: ('Unable to load OpenGL library', 'GL: cannot open shared object file', 'GL')", "libgl1"),
+    ("ImportError: ('Unable to load EGL library', 'EGL: cannot open shared object file', 'EGL')", "libegl1"),
+    ("AttributeError: 'NoneType' object has no attribute 'glGetError'", "libgl1"),
+    ("AttributeError: 'NoneType' object has no attribute 'XRenderFindVisualFormat'", "PYGLET_HEADLESS=1"),
+    ('ImportError: Library "GLU" not found.', "pyglet>=2"),
+    ("OpenGL.error.GLError: GLError(err = 12289, baseOperation = eglInitialize,", "libgl1-mesa-dri"),
+    ('pyglet.display.xlib.NoSuchDisplayException: Cannot connect to "None"', "PYOPENGL_PLATFORM=egl"),
+    ("OpenGL.error.NullFunctionError: Attempt to call an undefined function glGenVertexArrays", "egl"),
+    ("ImportError: cannot import name 'OSMesaCreateContextAttribs' from 'OpenGL.osmesa'", "PyOpenGL==3.1.10"),
+    ("Couldn't open libEGL.so.1: libEGL.so.1: cannot open shared object file", "libegl1"),
+    ("Failed to create headless GPU context: EGL Error (0x3001): EGL_NOT_INITIALIZED", "libgl1-mesa-dri"),
+    ("ImportError: numpy.core.multiarray failed to import", "numpy>=1.26,<2"),
+    ("AttributeError: `np.infty` was removed in the NumPy 2.0 release", "numpy>=1.26,<2"),
+    ("ModuleNotFoundError: No module named 'bpy'", "pip install"),
+]
+
+
+@pytest.mark.parametrize(("text", "remedy"), FAILURES)
+def test_each_failure_has_its_remedy(text: str, remedy: str) -> None:
+    output = f"Traceback (most recent call last):\n  File x\n{text}\nsomething printed later\n"
+    result = explain_failure("cycles", output, -6)
+    assert not result.works
+    assert result.found == text
+    assert remedy in result.remedy
+    assert "\n" not in result.found + result.remedy
+
+
+def test_an_unknown_failure_is_quoted_with_a_way_to_see_more() -> None:
+    result = explain_failure("cycles", "first\nKernel panic\n\n", 1)
+    assert (result.works, result.found) == (False, "Kernel panic")
+    assert "python -m render_jobs.probe cycles" in result.remedy
+    assert explain_failure("cycles", "", -6).found == "ended with status -6"
+
+
+@pytest.mark.blender
+@pytest.mark.parametrize("name", sorted(TRIES))
+def test_what_can_be_tried_answers_either_way(name: str) -> None:
+    result = probe(name)
+    assert result.works == (result.remedy == "")
+    assert result.found
+    if name == "cycles":
+        assert result.works, "the other tests of this folder need it"
+        assert "Blender" in result.found
+
+
+def test_a_try_that_gives_no_answer_has_failed() -> None:
+    result = probe("cycles", timeout=0.001)
+    assert not result.works
+    assert "no answer in 0 s" in result.found
