@@ -103,32 +103,31 @@ def silhouette(
 
 def _spans(triangles: ScreenTriangles, width: int, height: int) -> tuple[Indices, Indices, Indices, Indices]:
     """Rows of pixel centres inside triangles: triangle, image row, first column, column after the last."""
-    y = triangles.xy[..., 1]
-    top = np.clip(np.ceil(y.min(axis=1) - 0.5), 0, height).astype(np.intp)
-    bottom = np.clip(np.ceil(y.max(axis=1) - 0.5), 0, height).astype(np.intp)
+    top = np.clip(np.ceil(triangles.y.min(axis=0) - 0.5), 0, height).astype(np.intp)
+    bottom = np.clip(np.ceil(triangles.y.max(axis=0) - 0.5), 0, height).astype(np.intp)
     owner, offset = ranges(bottom - top)
     line = top[owner] + offset
-    left, right = _crossings(triangles.xy, owner, line + 0.5)
+    left, right = _crossings(triangles, owner, line + 0.5)
     first = np.clip(np.ceil(left - 0.5), 0, width).astype(np.intp)
     end = np.clip(np.ceil(right - 0.5), 0, width).astype(np.intp)
     filled = end > first
     return owner[filled], line[filled], first[filled], end[filled]
 
 
-def _crossings(xy: Float64s, owner: Indices, y: Float64s) -> tuple[Float64s, Float64s]:
+def _crossings(triangles: ScreenTriangles, owner: Indices, y: Float64s) -> tuple[Float64s, Float64s]:
     """Where the horizontal line ``y`` enters and leaves triangle ``owner``: x on the edges it crosses."""
     left = np.full(len(owner), np.inf)
     right = np.full(len(owner), -np.inf)
-    for k in range(3):
-        a, b = xy[:, k], xy[:, (k + 1) % 3]
+    for a, b in ((0, 1), (1, 2), (2, 0)):
         # From the upper end to the lower, whichever triangle asks: a shared edge gives the same x to both.
-        swap = (a[:, 1] > b[:, 1])[:, None]
-        upper, lower = np.where(swap, b, a), np.where(swap, a, b)
+        swap = triangles.y[a] > triangles.y[b]
+        x0, x1 = np.where(swap, triangles.x[[b, a]], triangles.x[[a, b]])
+        y0, y1 = np.where(swap, triangles.y[[b, a]], triangles.y[[a, b]])
         with np.errstate(divide="ignore", invalid="ignore"):
-            slope = (lower[:, 0] - upper[:, 0]) / (lower[:, 1] - upper[:, 1])
-        crossed = np.flatnonzero((upper[owner, 1] <= y) & (y < lower[owner, 1]))
+            slope = (x1 - x0) / (y1 - y0)
+        crossed = np.flatnonzero((y0[owner] <= y) & (y < y1[owner]))
         edge = owner[crossed]
-        x = upper[edge, 0] + (y[crossed] - upper[edge, 1]) * slope[edge]
+        x = x0[edge] + (y[crossed] - y0[edge]) * slope[edge]
         left[crossed] = np.minimum(left[crossed], x)
         right[crossed] = np.maximum(right[crossed], x)
     return left, right
@@ -139,31 +138,28 @@ def _fragments(
 ) -> Iterator[tuple[Indices, Indices, Float64s]]:
     """Covered pixels in bounded blocks: flat pixel index, row of ``triangles`` and 1 / z there."""
     owner, line, first, end = _spans(triangles, width, height)
-    gradient = _inverse_depth_gradient(triangles)
-    nearest, farthest = triangles.inverse_z.max(axis=1), triangles.inverse_z.min(axis=1)
+    along_x, along_y = _inverse_depth_gradient(triangles)
+    nearest, farthest = triangles.inverse_z.max(axis=0), triangles.inverse_z.min(axis=0)
+    # 1 / z at the middle of the first pixel of each span.
+    at_first = triangles.inverse_z[0, owner]
+    at_first += along_x[owner] * (first + 0.5 - triangles.x[0, owner])
+    at_first += along_y[owner] * (line + 0.5 - triangles.y[0, owner])
     total = np.cumsum(end - first)
     limits = np.arange(_FRAGMENTS_AT_ONCE, total[-1] if len(total) else 0, _FRAGMENTS_AT_ONCE)
     blocks = np.searchsorted(total, limits)
     for span in np.split(np.arange(len(owner)), blocks):
         which, offset = ranges(end[span] - first[span])
         spans = span[which]
-        row, column = owner[spans], first[spans] + offset
-        origin = triangles.xy[row, 0]
-        inverse_z = (
-            triangles.inverse_z[row, 0]
-            + gradient[row, 0] * (column + 0.5 - origin[:, 0])
-            + gradient[row, 1] * (line[spans] + 0.5 - origin[:, 1])
-        )
+        row = owner[spans]
+        inverse_z = at_first[spans] + along_x[row] * offset
         # A sliver's gradient is ill-conditioned; its depth still lies between those of its corners.
-        yield line[spans] * width + column, row, np.clip(inverse_z, farthest[row], nearest[row])
+        inverse_z = np.clip(inverse_z, farthest[row], nearest[row])
+        yield line[spans] * width + first[spans] + offset, row, inverse_z
 
 
-def _inverse_depth_gradient(triangles: ScreenTriangles) -> Float64s:
-    """``(N, 2)`` change of 1 / z per pixel in x and y over each triangle."""
-    edge = triangles.xy[:, 1:] - triangles.xy[:, :1]
-    rise = triangles.inverse_z[:, 1:] - triangles.inverse_z[:, :1]
-    area = edge[:, 0, 0] * edge[:, 1, 1] - edge[:, 0, 1] * edge[:, 1, 0]
+def _inverse_depth_gradient(triangles: ScreenTriangles) -> tuple[Float64s, Float64s]:
+    """``(N,)`` change of 1 / z per pixel in x, and in y, over each triangle."""
+    x, y, rise = (value[1:] - value[0] for value in (triangles.x, triangles.y, triangles.inverse_z))
+    area = x[0] * y[1] - y[0] * x[1]
     safe = np.where(area == 0, np.inf, area)
-    along_x = (rise[:, 0] * edge[:, 1, 1] - rise[:, 1] * edge[:, 0, 1]) / safe
-    along_y = (rise[:, 1] * edge[:, 0, 0] - rise[:, 0] * edge[:, 1, 0]) / safe
-    return np.stack([along_x, along_y], axis=1)
+    return (rise[0] * y[1] - rise[1] * y[0]) / safe, (rise[1] * x[0] - rise[0] * x[1]) / safe

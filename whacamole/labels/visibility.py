@@ -15,15 +15,14 @@ OUTSIDE, OCCLUDED, VISIBLE = 0, 1, 2
 _THICKNESS_FACTOR = 1.5
 _CLOTHING = 0.03  # metres of cloth or hair over the skin that do not hide a joint
 _DIRECTIONS = 64
-_CONE = np.cos(np.radians(20.0))
 
 
 def flesh_thickness(rest_vertices: Floats, rest_joints: Floats) -> Float64s:
     """How much of its own flesh may lie between a joint and the eye: ``(J,)`` metres.
 
-    From each joint at rest, the distance to the nearest vertex within 20° of each of 64 evenly spread
-    directions; their median is half the local thickness of the limb (an arm is long in few directions).
-    One and a half times that allows for slanting views, and 3 cm for what the person wears.
+    Around each joint at rest the vertices are sorted into 64 evenly spread directions; the median over the
+    directions of the distance to the nearest is half the local thickness of the limb (an arm is long in few
+    directions). One and a half times that allows for slanting views, and 3 cm for what the person wears.
 
     Args:
         rest_vertices: ``(V, 3)``.
@@ -33,9 +32,8 @@ def flesh_thickness(rest_vertices: Floats, rest_joints: Floats) -> Float64s:
     thickness = np.empty(len(rest_joints))
     for number, joint in enumerate(np.asarray(rest_joints, dtype=np.float64)):
         offset = rest_vertices - joint
-        distance = np.linalg.norm(offset, axis=1)
-        in_cone = offset @ directions.T >= _CONE * distance[:, None]
-        nearest = np.where(in_cone, distance[:, None], np.inf).min(axis=0)
+        nearest = np.full(_DIRECTIONS, np.inf)
+        np.minimum.at(nearest, (offset @ directions.T).argmax(axis=1), np.linalg.norm(offset, axis=1))
         thickness[number] = np.median(nearest[np.isfinite(nearest)])
     return _THICKNESS_FACTOR * thickness + _CLOTHING
 
@@ -87,8 +85,8 @@ def whole_box(surfaces_camera: Sequence[Floats], K: Float64s) -> Float64s:
     points = points[points[:, 2] > NEAR]
     if not len(points):
         return np.zeros(4)
-    pixels = project_points(points, K)
-    return np.concatenate([pixels.min(axis=0), pixels.max(axis=0)])
+    x, y = project_points(points, K).T
+    return np.array([x.min(), y.min(), x.max(), y.max()])
 
 
 def seen_box(own: Bools) -> Float64s:
@@ -116,7 +114,8 @@ def truncation(
     points = np.asarray(vertices_camera, dtype=np.float64)
     inside = points[:, 2] > NEAR
     pixels = project_points(points[inside], K)
-    inside[inside] = ((pixels >= 0) & (pixels < np.asarray(size))).all(axis=1)
+    x, y = pixels.T
+    inside[inside] = (x >= 0) & (x < size[0]) & (y >= 0) & (y < size[1])
     return float(areas[~inside].sum() / areas.sum())
 
 
