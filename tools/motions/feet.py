@@ -1,6 +1,6 @@
 """Feet that stand still: contact found, sliding taken out, the floor kept at zero.
 
-The sole of a foot is two points, heel and ball. While one rests it is the pivot of the foot; what the pivot
+The sole of a foot is a few points, heel and ball. While one rests it is the pivot of the foot; what the pivot
 slides is summed up over the stance and taken back, so that it does not slide at all. In the swing the
 correction passes smoothly from one stance to the next.
 """
@@ -22,7 +22,7 @@ MIN_STANCE = 0.07
 
 
 def correction(sole: FloatArray, fps: float) -> FloatArray:
-    """Shift ``(T,3)`` [m] of one foot with ``sole (T,2,3)``: heel and ball in world axes, y up."""
+    """Shift ``(T,3)`` [m] of one foot with ``sole (T,K,3)``: points of heel and ball in the world, y up."""
     T = len(sole)
     pivot, planted = _pivots(sole, fps)
     shift = np.zeros((T, 3))
@@ -43,9 +43,9 @@ def correction(sole: FloatArray, fps: float) -> FloatArray:
 def travel(soles: FloatArray, fps: float) -> FloatArray:
     """Shift ``(T,3)`` [m] of the whole body that makes it move by standing: the foot that carries it stays.
 
-    ``soles (2,T,2,3)``: heel and ball of either foot. For clips whose root does not fit the steps, so that
-    a foot that bears the body slides for long. Only for people on their feet. The correcting velocity is
-    minus that of the lower, slower foot; in flight it passes from take-off to landing.
+    ``soles (2,T,K,3)``: points of heel and ball of either foot. For clips whose root does not fit the
+    steps, so that a foot that bears the body slides for long. Only for people on their feet. The correcting
+    velocity is minus that of the lower, slower foot; in flight it passes from take-off to landing.
     """
     velocity = np.gradient(soles, axis=1)[..., [0, 2]] * fps
     speed = np.linalg.norm(velocity, axis=-1)

@@ -21,18 +21,18 @@ from scipy.ndimage import gaussian_filter1d, maximum_filter1d
 from scipy.spatial.transform import Rotation
 
 from tools.motions.feet import correction, travel
-from tools.motions.source import BALL, HEEL, TO_SMPL, Clip, FloatArray, forward
+from tools.motions.source import SOLE, TO_SMPL, Clip, FloatArray, forward
 from whacamole.motion.skeleton import JOINT_NAMES, PARENTS, REST_JOINTS, TOUCH_RADII, touch_points
 from whacamole.motion.skeleton import forward as pose_skeleton
 
 REST = dict(zip(JOINT_NAMES, REST_JOINTS, strict=True))
 SIDES = ("left", "right")
 COLLAR_SHARE = 0.15
-SOLE = 0.072
+ANKLE = 0.072
 """Height [m] of the target's ankle above its sole; the source has 0.05."""
-LIFT = SOLE - 0.05
+LIFT = ANKLE - 0.05
 REACH = 0.9985
-HAND = 0.16
+HAND = 0.185
 """From the wrist to the fingertips [m]."""
 
 
@@ -112,9 +112,9 @@ def _arm(world: dict[str, Rotation], rotations: dict[str, Rotation], side: str) 
 
 
 def _sole(positions: dict[str, FloatArray], rotations: dict[str, Rotation], side: str) -> FloatArray:
-    """Heel and ball of the source's foot ``(T,2,3)``."""
+    """Corners of the sole of the source's foot ``(T,4,3)``."""
     ankle, turn = positions[f"{side}_ankle"], rotations[f"{side}_ankle"]
-    return np.stack([ankle + turn.apply(TO_SMPL @ point) for point in (HEEL, BALL)], axis=1)
+    return np.stack([ankle + turn.apply(TO_SMPL @ point) for point in SOLE], axis=1)
 
 
 def _ankle(
@@ -186,7 +186,7 @@ def _toes(foot: Rotation, ankle: FloatArray, fps: float) -> Rotation:
     """Toes bend up by what the heel lifts, while the ball is near the floor."""
     ahead = foot.apply([0.0, 0.0, 1.0])
     pitch = np.clip(np.arcsin(np.clip(-ahead[:, 1], -1.0, 1.0)), 0.0, np.radians(60.0))
-    ball = ankle + foot.apply([0.0, -SOLE, 0.135])
+    ball = ankle + foot.apply([0.0, -ANKLE, 0.135])
     near = np.clip(1.0 - (ball[:, 1] - 0.03) / 0.06, 0.0, 1.0)
     bend = _envelope(pitch * near, 0.06 * fps)
     return Rotation.from_rotvec(np.outer(bend, [-1.0, 0.0, 0.0]))

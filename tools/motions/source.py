@@ -37,8 +37,10 @@ JOINTS: tuple[tuple[str, str, int, tuple[float, float, float]], ...] = (
 )
 NAMES = tuple(name for name, _, _, _ in JOINTS)
 FRAME_WIDTH = 4 + sum(count for _, _, count, _ in JOINTS)
-# The sole: corners of the foot's box below the ankle [m].
-HEEL, BALL = np.array([-0.0435, -0.05, 0.0]), np.array([0.1335, -0.05, 0.0])
+# The sole, heel and ball: lower corners of the foot's box, as far apart as on the target's foot [m].
+SOLE = np.array(
+    [[-0.0435, -0.05, -0.028], [-0.0435, -0.05, 0.028], [0.1335, -0.05, -0.042], [0.1335, -0.05, 0.042]]
+)
 
 # To the axes of the SMPL family: x left, y up, z forward.
 TO_SMPL = np.array([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])

