@@ -1,4 +1,4 @@
-"""Datasets and predictions made by the contract (docs/format.md), with nothing but NumPy and the embedded body."""
+"""Datasets and predictions by the contract (docs/format.md), made of NumPy and the embedded body alone."""
 
 import json
 from collections.abc import Callable, Sequence
@@ -57,7 +57,9 @@ def make_camera(rng: np.random.Generator, frames: int, *, static: bool = False) 
     }
 
 
-def make_person(rng: np.random.Generator, frames: int, place: np.ndarray, *, still: bool = False) -> BodyParams:
+def make_person(
+    rng: np.random.Generator, frames: int, place: np.ndarray, *, still: bool = False
+) -> BodyParams:
     """A person who stands upright near ``place`` [m] and moves."""
     moving = 0.0 if still else 1.0
     pose = BodyParams.zeros(frames, rng.normal(size=10))
@@ -145,8 +147,8 @@ def write_dataset(root: Path, scenes: Sequence[Scene], split: str = "test") -> P
 
 _COPIED = (
     "track_id", "betas", "expression", "global_orient_world", "transl_world", "global_orient_camera",
-    "transl_camera", "body_pose", "left_hand_pose", "right_hand_pose", "jaw_pose", "leye_pose", "reye_pose", "valid",
-    "body_model", "body_model_sha256",
+    "transl_camera", "body_pose", "left_hand_pose", "right_hand_pose", "jaw_pose", "leye_pose", "reye_pose",
+    "valid", "body_model", "body_model_sha256",
 )  # fmt: skip
 
 

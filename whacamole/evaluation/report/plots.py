@@ -43,7 +43,7 @@ def trajectories(scores: Sequence[tuple[str, SequenceScore]]) -> str:
     lines: list[Line] = []
     for key, path in first.paths.items():
         if key.startswith("truth/"):
-            lines.append(_from_above("truth" if not lines else "", path, plane, _TRUTH, "camera" in key))
+            lines.append(_from_above("truth" if not lines else "", path, plane, _TRUTH, "camera" in key, 3.0))
     for number, (name, score) in enumerate(scores):
         colour, named = COLOURS[number % len(COLOURS)], False
         for key, path in score.paths.items():
@@ -53,9 +53,11 @@ def trajectories(scores: Sequence[tuple[str, SequenceScore]]) -> str:
     return chart(lines, f"{first.id}: from above", "m", "m", equal=True)
 
 
-def _from_above(label: str, path: Points, plane: Points, colour: str, camera: bool) -> Line:
+def _from_above(
+    label: str, path: Points, plane: Points, colour: str, camera: bool, width: float = 1.6
+) -> Line:
     flat = path @ plane.T
-    return Line(label, flat[:, 0], flat[:, 1], colour, dashed=camera)
+    return Line(label, flat[:, 0], flat[:, 1], colour, dashed=camera, width=width)
 
 
 def error_over_time(scores: Sequence[tuple[str, SequenceScore]], key: str | None = None) -> str | None:

@@ -21,6 +21,7 @@ class Line:
         x, y: (N,), broken where either is NaN.
         colour: of the stroke.
         dashed: a dashed stroke.
+        width: of the stroke [px].
     """
 
     label: str
@@ -28,6 +29,7 @@ class Line:
     y: Curve
     colour: str
     dashed: bool = False
+    width: float = 1.6
 
 
 @dataclass(frozen=True)
@@ -92,7 +94,9 @@ def chart(
         dash = ' stroke-dasharray="5 3"' if line.dashed else ""
         path = _path(np.array([to_x(v) for v in line.x]), np.array([to_y(v) for v in line.y]))
         if path:
-            parts.append(f'<path d="{path}" fill="none" stroke="{line.colour}" stroke-width="1.6"{dash}/>')
+            parts.append(
+                f'<path d="{path}" fill="none" stroke="{line.colour}" stroke-width="{line.width:g}"{dash}/>'
+            )
     parts += _legend(lines, box)
     return "".join([*parts, "</svg>"])
 
