@@ -1,0 +1,167 @@
+"""Dresses a cast member: the meshes of one person over time, ready for a render job."""
+
+import hashlib
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+from render_jobs.scene import Material, Mesh
+from whacamole.body import BodyModel, BodyParams
+from whacamole.wardrobe.cast import CastMember
+from whacamole.wardrobe.catalogue import Catalogue, Item, catalogue
+from whacamole.wardrobe.layer import item_layer, join
+from whacamole.wardrobe.textures import TextureFolder, eye_texture, item_texture, skin_texture
+
+Float32Array = npt.NDArray[np.float32]
+Int32Array = npt.NDArray[np.int32]
+BoolArray = npt.NDArray[np.bool_]
+
+SKIN_PART, EYE_PARTS, TEETH_PARTS, TONGUE_PART = 0, (1, 2), (3, 4), 5
+"""Values of the body file's ``vertex_part``."""
+
+ROUGHNESS: Final = {"leather": 0.5, "hair": 0.45, "cloth": 0.85, "denim": 0.9, "keep": 0.75}
+
+
+@dataclass(frozen=True, eq=False)
+class _Look:
+    """What all meshes of one person share."""
+
+    name: str
+    track_id: int
+    subdivision: int
+
+    def mesh(
+        self,
+        part: str,
+        vertices: Float32Array,
+        faces: Int32Array,
+        material: Material,
+        uv: Float32Array | None = None,
+        *,
+        fine: bool = False,
+    ) -> Mesh:
+        return Mesh(
+            name=f"{self.name}-{part}",
+            vertices=vertices,
+            faces=faces,
+            uv=uv,
+            material=material.model_copy(update={"name": f"{self.name}-{part}"}),
+            track_id=self.track_id,
+            subdivision=0 if fine else self.subdivision,
+        )
+
+
+def fits(body: BodyModel) -> bool:
+    """Whether the wardrobe was cut for this body."""
+    if body.quads is None or "vertex_part" not in body.extras:
+        return False
+    return hashlib.sha256(body.quads.astype(np.int32).tobytes()).hexdigest() == catalogue().topology
+
+
+def dress(
+    member: CastMember,
+    body: BodyModel,
+    params: BodyParams,
+    *,
+    textures: Path,
+    track_id: int = 1,
+    name: str = "person",
+    subdivision: int = 0,
+) -> list[Mesh]:
+    """One person as meshes: skin, eyes, mouth, clothes, hair.
+
+    Args:
+        member: who.
+        body: the embedded body.
+        params: every frame to be drawn, the neighbours −1 and T included.
+        textures: folder for textures made to order; people may share it.
+        track_id: what the mask says; all meshes of the person carry it.
+        name: prefix of the meshes' names, unique in the job.
+        subdivision: levels for skin and clothes; 1 for people the camera sees closely.
+    """
+    wardrobe, folder = catalogue(), TextureFolder(textures)
+    look = _Look(name, track_id, subdivision)
+    items = [wardrobe.items[worn.item] for worn in member.worn]
+    hidden = np.zeros(body.num_vertices, dtype=bool)
+    for item in items:
+        hidden |= wardrobe.geometry(item.name).hidden
+    posed = body.pose(params).vertices
+    skin = skin_texture(wardrobe, member, folder)
+    eyes = eye_texture(member.eye_colour, folder)
+    return [
+        *_body_meshes(look, body, posed, hidden, skin, eyes),
+        *_item_meshes(look, wardrobe, member, items, body, params, folder),
+    ]
+
+
+def _body_meshes(
+    look: _Look, body: BodyModel, posed: Float32Array, hidden: BoolArray, skin: Path, eyes: Path
+) -> Iterator[Mesh]:
+    assert body.quads is not None
+    assert body.uv_quads is not None
+    part = body.extras["vertex_part"]
+    of_face = part[body.quads[:, 0]]
+    uv = body.uv[body.uv_quads]
+    seen = (of_face == SKIN_PART) & ~hidden[body.quads].all(axis=1)
+    skin_like = Material(base_color_texture=skin, roughness=0.55, specular=0.4, subsurface=0.08)
+    yield look.mesh("skin", *_cut(posed, body.quads[seen]), skin_like, uv[seen])
+    for number, side in zip(EYE_PARTS, ("left", "right"), strict=True):
+        chosen = of_face == number
+        quads = body.quads[chosen]
+        eye_like = Material(base_color_texture=eyes, roughness=0.1)
+        yield look.mesh(f"{side}-eye", *_cut(posed, quads), eye_like, _eye_uv(body, number, quads))
+    teeth, tongue = np.isin(of_face, TEETH_PARTS), of_face == TONGUE_PART
+    yield look.mesh(
+        "teeth", *_cut(posed, body.quads[teeth]), Material(base_color=(0.83, 0.79, 0.71), roughness=0.3)
+    )
+    yield look.mesh(
+        "tongue", *_cut(posed, body.quads[tongue]), Material(base_color=(0.60, 0.27, 0.26), roughness=0.4)
+    )
+
+
+def _cut(vertices: Float32Array, faces: Int32Array) -> tuple[Float32Array, Int32Array]:
+    """The vertices (T, n, 3) that some faces use, and the faces in their numbers."""
+    used = np.unique(faces)
+    number = np.zeros(vertices.shape[1], dtype=np.int32)
+    number[used] = np.arange(len(used))
+    return vertices[:, used], number[faces]
+
+
+def _eye_uv(body: BodyModel, part: int, quads: Int32Array) -> Float32Array:
+    """(F, 4, 2) the picture laid on the eyeball from the front, at rest."""
+    rest = body.v_template
+    eye = rest[body.extras["vertex_part"] == part]
+    low, high = eye[:, :2].min(axis=0), eye[:, :2].max(axis=0)
+    flat: Float32Array = (0.5 + 0.49 * (2 * rest[:, :2] - low - high) / (high - low)).astype(np.float32)
+    return flat[quads]
+
+
+def _item_meshes(
+    look: _Look,
+    wardrobe: Catalogue,
+    member: CastMember,
+    items: list[Item],
+    body: BodyModel,
+    params: BodyParams,
+    folder: TextureFolder,
+) -> Iterator[Mesh]:
+    layers = [item_layer(wardrobe, item.name) for item in items]
+    posed = join(layers).pose(body, params)
+    start = 0
+    for worn, item, layer in zip(member.worn, items, layers, strict=True):
+        vertices = posed[:, start : start + layer.num_vertices]
+        start += layer.num_vertices
+        geometry = wardrobe.geometry(item.name)
+        material = Material(
+            base_color_texture=item_texture(wardrobe, item, worn, member.hair_colour, folder),
+            alpha_mode="clip" if item.see_through else "opaque",
+            roughness=ROUGHNESS[item.colouring],
+            specular=0.3,
+            normal_texture=wardrobe.texture(item.normal) if item.normal else None,
+        )
+        fine = item.see_through or len(geometry.faces) > 3500
+        yield look.mesh(item.name, vertices, geometry.faces, material, geometry.uv, fine=fine)
