@@ -10,8 +10,10 @@ from numpy.typing import ArrayLike
 from camera_rigs.errors import PlanError
 from camera_rigs.path import CameraPath
 from camera_rigs.rules import Evidence, Finding, Limits, judge
+from camera_rigs.scene import SCALES
 from camera_rigs.shake import Shake
 from camera_rigs.shot import Keyframe, Shot
+from camera_rigs.shots.catalogue import KINDS
 from camera_rigs.subject import SubjectTrack
 from camera_rigs.world import World
 
@@ -121,6 +123,9 @@ def evidence_from_document(
         raise PlanError(f"plan: {error!r}: an entry is missing or of a wrong type, plan anew") from error
     if not shots:
         raise PlanError("plan: it holds no shots, plan anew")
+    for shot in shots:
+        if shot.kind not in KINDS or shot.scale not in SCALES:
+            raise PlanError(f"plan: shot {shot.kind!r} of scale {shot.scale!r} is unknown, plan anew")
     path = CameraPath(
         np.asarray(K, float), np.asarray(T_world_camera, float), subject.fps, int(width), int(height)
     )
@@ -141,4 +146,8 @@ def judge_document(
     limits: Limits | None = None,
 ) -> tuple[Finding, ...]:
     """The findings of `judge` on a stored plan; arguments and errors as in `evidence_from_document`."""
-    return judge(evidence_from_document(document, K, T_world_camera, width, height, limits=limits))
+    evidence = evidence_from_document(document, K, T_world_camera, width, height, limits=limits)
+    try:
+        return judge(evidence)
+    except KeyError as error:
+        raise PlanError(f"plan: parameter {error} of a shot is missing, plan anew") from error

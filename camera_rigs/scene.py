@@ -17,8 +17,8 @@ WIDTH_SHARE = 0.9
 """The people span at most this share of the width of the view; where the height asks less, the camera
 stands back."""
 
-SHOULDER = 0.3
-"""Half width [m] kept around every neck in medium shots and close-ups."""
+HEAD = 0.15
+"""Half width [m] kept around every neck in medium shots and close-ups: no head is cut."""
 
 STAND_OFF = 0.5
 """Nearest distance [m] of a planned camera to the furthest reach of the people."""
@@ -103,15 +103,13 @@ class Scene:
         do fill.
 
         The fraction comes out smaller than asked where the width binds (the whole box in full and long
-        shots, necks and shoulders in closer ones must lie within `WIDTH_SHARE` of it) or where the camera
+        shots, the heads in closer ones must lie within `WIDTH_SHARE` of it) or where the camera
         must `STAND_OFF`.
         """
         subject, lens = self.subject, self.lens
         above, below = (float(at(signal, frame)) for signal in subject.extent(scale.anchor))
         wide = (
-            at(subject.span, frame)
-            if scale.anchor == "pelvis"
-            else 2.0 * (at(subject.spread, frame) + SHOULDER)
+            at(subject.span, frame) if scale.anchor == "pelvis" else 2.0 * (at(subject.spread, frame) + HEAD)
         )
         r = max(
             float(framing_radius(above, below, frac, theta, focal, lens.height)),

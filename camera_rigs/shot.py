@@ -1,7 +1,7 @@
 """What a shot planner returns: the shot as a record (keyframes, parameters) and its move (a camera per
 frame)."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -112,6 +112,19 @@ class Draft:
 
     shot: Shot
     move: Move
+
+
+def record(
+    kind: str,
+    scale: Scale,
+    span: Span,
+    parameters: Mapping[str, Parameter],
+    keyframes: Iterable[Keyframe],
+) -> Shot:
+    """The shot over a span. In a clip of one frame a movement ends before its last keyframe, which is left
+    out."""
+    inside = tuple(keyframe for keyframe in keyframes if keyframe.frame <= span.end)
+    return Shot(kind, scale.name, span.start, span.end, parameters, inside)
 
 
 def keyframe_at(

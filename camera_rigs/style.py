@@ -41,7 +41,8 @@ TURNING: Mapping[str, float] = {"pan": 6.0, "follow": 2.0, "static": 1.0, "dolly
 """Long-distance motion whose facing turns: pan, as the paper says."""
 
 REPEAT = 0.1
-"""Factor on the weight of the kind that has just been shown: a vertical arc mostly follows a horizontal one."""
+"""Factor on the weight of the kind that has just been shown: a vertical arc mostly follows a horizontal
+one."""
 
 
 @dataclass(frozen=True)

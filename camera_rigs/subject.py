@@ -14,8 +14,9 @@ from camera_rigs.smoothing import heading_of, rate_of_change, smooth
 from camera_rigs.spherical import Array
 
 ANCHOR_SMOOTHING = 0.6
-"""Standard deviation [s] of the anchor's low-pass: takes out the bounce of a walk and most of the sway of a dance
-(0.5 Hz to 17 %), which would swing a camera that travels with it; keeps the way of a walk to 0.4 m in a turn."""
+"""Standard deviation [s] of the anchor's low-pass: takes out the bounce of a walk and most of the sway of a
+dance (0.5 Hz to 17 %), which would swing a camera that travels with it; keeps the way of a walk to 0.4 m in
+a turn."""
 
 FACING_SMOOTHING = 0.5
 """Standard deviation [s] of the facing's low-pass: takes out nods and hip swing, leaves the turns of a

@@ -28,7 +28,7 @@ class Limits:
         look_at: largest angle between the view and what the shot looks at [°].
         radius: largest relative difference of a kept radius.
         spacing: largest relative difference between the steps of equally spaced keyframes.
-        backward: largest angle that a monotone arc runs backward between frames [°].
+        backward: largest angle by which an arc runs backward [°].
         fraction: largest relative difference of an achieved fraction of the view.
         place: largest difference of a tracking keyframe from its place in the human-centric frame [m].
         overlap: how far an overlap at or between keyframes may be on the wrong side of λ_overlap.
@@ -45,7 +45,7 @@ class Limits:
     look_at: float = 1.0
     radius: float = 0.02
     spacing: float = 0.02
-    backward: float = 0.05
+    backward: float = 0.2
     fraction: float = 0.02
     place: float = 0.03
     overlap: float = 0.02

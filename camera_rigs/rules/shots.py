@@ -61,13 +61,14 @@ def monotone(evidence: Evidence) -> list[Finding]:
     """An arc never runs backward."""
     findings = []
     for shot, begin, end in evidence.settled():
-        if shot.kind not in ARCS or begin == end:
+        if shot.kind not in ARCS:
             continue
         r, theta, phi = _spherical(evidence, shot, begin, end)
         swept, whole = _swept(shot, theta, phi)
-        backward = np.degrees(-np.sign(whole) * np.diff(swept))
+        onward = np.sign(whole) * swept
+        backward = np.degrees(np.maximum.accumulate(onward) - onward)
         slack = np.degrees(2.0 * _shake_angle(evidence, r))
-        frames = np.arange(begin, end)
+        frames = np.arange(begin, end + 1)
         findings += worst("monotone-angle", "°", frames, backward, evidence.limits.backward + slack)
     return findings
 
@@ -83,8 +84,8 @@ def radius(evidence: Evidence) -> list[Finding]:
             error = np.abs(r / wanted - 1.0)
         elif shot.kind in ("push", "pull") and begin < end:
             wanted = float(r[0])
-            way = np.diff(r) if shot.kind == "push" else -np.diff(r)
-            error, frames = np.maximum(way, 0.0) / wanted, frames[1:]
+            way = r if shot.kind == "push" else -r
+            error = (way - np.minimum.accumulate(way)) / wanted
         else:
             continue
         slack = 2.0 * evidence.shake.bound(0) / wanted if evidence.shake else 0.0

@@ -10,7 +10,7 @@ import numpy as np
 
 from camera_rigs.errors import PlanError
 from camera_rigs.scene import THETA_MIN, Scene, Span, View
-from camera_rigs.shot import Draft, Keyframe, Move, Parameter, Shot, keyframe_at
+from camera_rigs.shot import Draft, Keyframe, Move, Parameter, keyframe_at, record
 from camera_rigs.shots.pace import ANGULAR_SPEED, RIG_SPEED, Range, draw, radial, random_fracs
 from camera_rigs.smoothing import at
 from camera_rigs.spherical import Array, spherical_to_cartesian
@@ -78,7 +78,7 @@ def plan_arc(
         "fracs": " ".join(f"{frac:.3f}" for frac in reached),
     }
     move = Move.level(span, place(span.frames), scene.anchor(view.scale, span.frames), view.focal)
-    return Draft(Shot(kind, view.scale.name, span.start, span.end, parameters, tuple(keyframes)), move)
+    return Draft(record(kind, view.scale, span, parameters, keyframes), move)
 
 
 def _keyframe(

@@ -4,7 +4,7 @@ import numpy as np
 
 from camera_rigs.errors import PlanError
 from camera_rigs.scene import HEADROOM_OVER_GROUND, THETA_MAX, THETA_MIN, Scene, Span, View
-from camera_rigs.shot import Draft, Move, Shot, keyframe_at
+from camera_rigs.shot import Draft, Move, keyframe_at, record
 from camera_rigs.shots.pace import RIG_SPEED, Range, draw
 from camera_rigs.spherical import Array
 
@@ -28,7 +28,7 @@ def plan_boom(scene: Scene, span: Span, view: View, *, height: float) -> Draft:
     times = span.times(np.linspace(0.0, 1.0, 3))
     keyframes = tuple(keyframe_at(scene, view.scale, t, place(t), view.focal) for t in times)
     parameters = {"height": height, "radius": view.r}
-    shot = Shot("boom", view.scale.name, span.start, span.end, parameters, keyframes)
+    shot = record("boom", view.scale, span, parameters, keyframes)
     move = Move.level(span, place(span.frames), scene.anchor(view.scale, span.frames), view.focal)
     return Draft(shot, move)
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from camera_rigs.scene import Scene, Span, View
-from camera_rigs.shot import Draft, Move, Shot, keyframe_at
+from camera_rigs.shot import Draft, Move, keyframe_at, record
 from camera_rigs.shots.pace import RIG_SPEED, Range, draw
 from camera_rigs.spherical import Array
 
@@ -26,7 +26,7 @@ def plan_dolly(scene: Scene, span: Span, view: View, *, azimuth: float, distance
     times = span.times(np.linspace(0.0, 1.0, 3))
     keyframes = tuple(keyframe_at(scene, view.scale, t, place(t), view.focal) for t in times)
     parameters = {"azimuth": azimuth, "distance": distance, "radius": view.r}
-    shot = Shot("dolly", view.scale.name, span.start, span.end, parameters, keyframes)
+    shot = record("dolly", view.scale, span, parameters, keyframes)
     move = Move.level(span, place(span.frames), scene.anchor(view.scale, span.frames), view.focal)
     return Draft(shot, move)
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from camera_rigs.errors import PlanError
 from camera_rigs.scene import STAND_OFF, Scene, Span, View
-from camera_rigs.shot import Draft, Move, Shot, keyframe_at
+from camera_rigs.shot import Draft, Move, keyframe_at, record
 from camera_rigs.shots.pace import RIG_SPEED, Range, draw
 from camera_rigs.smoothing import at
 from camera_rigs.spherical import Array, spherical_to_cartesian
@@ -51,7 +51,7 @@ def plan_dolly_zoom(scene: Scene, span: Span, view: View, *, radius: float) -> D
         )
     eye, focals = zoom(span.frames)
     parameters = {"radius": view.r, "end_radius": radius, "frac": frac}
-    shot = Shot("dolly-zoom", view.scale.name, span.start, span.end, parameters, tuple(keyframes))
+    shot = record("dolly-zoom", view.scale, span, parameters, keyframes)
     return Draft(shot, Move.level(span, eye, scene.anchor(view.scale, span.frames), focals))
 
 

@@ -7,7 +7,7 @@ direction instead of whipping round.
 import numpy as np
 
 from camera_rigs.scene import Scene, Span, View
-from camera_rigs.shot import Draft, Move, Shot, keyframe_at
+from camera_rigs.shot import Draft, Move, keyframe_at, record
 from camera_rigs.shots.pace import RIG_SPEED, Range, draw
 from camera_rigs.smoothing import at, smooth
 from camera_rigs.spherical import Array, spherical_to_cartesian
@@ -48,7 +48,7 @@ def plan_follow(scene: Scene, span: Span, view: View, *, look_ahead: float = 0.3
         for frame in frames
     )
     parameters = {"look_ahead": look_ahead, "radius": view.r, "theta": view.theta, "phi": phi}
-    shot = Shot("follow", view.scale.name, span.start, span.end, parameters, keyframes)
+    shot = record("follow", view.scale, span, parameters, keyframes)
     return Draft(shot, Move.level(span, eye, target, view.focal))
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from camera_rigs.errors import PlanError
 from camera_rigs.scene import PAIR_DISTANCE, SCALES, Scene, Span, View
-from camera_rigs.shot import Draft, Move, Shot, keyframe_at
+from camera_rigs.shot import Draft, Move, keyframe_at, record
 from camera_rigs.shots.pace import RIG_SPEED, Range, draw
 from camera_rigs.smoothing import at, smootherstep
 from camera_rigs.spherical import Array, cartesian_to_spherical, spherical_to_cartesian, wrap
@@ -70,7 +70,7 @@ def plan_over_shoulder(scene: Scene, span: Span, view: View, *, shoulder: Should
         "behind": shoulder.behind,
         "beside": shoulder.beside,
     }
-    shot = Shot("over-shoulder", view.scale.name, span.start, span.end, parameters, keyframes)
+    shot = record("over-shoulder", view.scale, span, parameters, keyframes)
     return Draft(shot, Move.level(span, eye, target, view.focal))
 
 

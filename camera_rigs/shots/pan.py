@@ -6,7 +6,7 @@ It turns horizontally only, as in the paper, unless the people would climb or si
 import numpy as np
 
 from camera_rigs.scene import Scene, Span, View
-from camera_rigs.shot import Draft, Move, Shot, keyframe_at
+from camera_rigs.shot import Draft, Move, keyframe_at, record
 from camera_rigs.shots.tracking import LAMBDA_OVERLAP, overlap_keyframes
 from camera_rigs.spherical import Array, cartesian_to_spherical
 
@@ -43,7 +43,7 @@ def plan_pan(
         for frame in frames
     )
     parameters = {"lambda_overlap": lambda_overlap, "tilt": tilt, "radius": view.r}
-    shot = Shot("pan", view.scale.name, span.start, span.end, parameters, keyframes)
+    shot = record("pan", view.scale, span, parameters, keyframes)
     return Draft(shot, Move.level(span, eye, target, view.focal))
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from camera_rigs.errors import PlanError
 from camera_rigs.scene import Scene, Span, View
-from camera_rigs.shot import Draft, Move, Parameter, Shot, keyframe_at
+from camera_rigs.shot import Draft, Move, Parameter, keyframe_at, record
 from camera_rigs.shots.pace import MIN_CHANGE, PULL_ROOM, RIG_SPEED, draw, radial, random_fracs
 from camera_rigs.smoothing import at
 from camera_rigs.spherical import spherical_to_cartesian
@@ -65,7 +65,7 @@ def _plan(scene: Scene, span: Span, view: View, fracs: Sequence[float], kind: st
     }
     target = scene.anchor(view.scale, span.frames)
     eye = target + radial(span, radii, span.frames)[:, None] * direction
-    shot = Shot(kind, view.scale.name, span.start, span.end, parameters, keyframes)
+    shot = record(kind, view.scale, span, parameters, keyframes)
     return Draft(shot, Move.level(span, eye, target, view.focal))
 
 

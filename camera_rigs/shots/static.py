@@ -3,7 +3,7 @@
 import numpy as np
 
 from camera_rigs.scene import Scene, Span, View
-from camera_rigs.shot import Draft, Move, Shot, keyframe_at
+from camera_rigs.shot import Draft, Move, keyframe_at, record
 
 
 def plan_static(scene: Scene, span: Span, view: View, *, drift: float = 1.0) -> Draft:
@@ -23,7 +23,7 @@ def plan_static(scene: Scene, span: Span, view: View, *, drift: float = 1.0) -> 
         keyframe_at(scene, view.scale, frame, eye, view.focal, target=target) for frame in frames
     )
     parameters = {"radius": view.r, "theta": view.theta, "phi": view.phi, "drift": drift}
-    shot = Shot("static", view.scale.name, span.start, span.end, parameters, keyframes)
+    shot = record("static", view.scale, span, parameters, keyframes)
     return Draft(shot, Move.level(span, eye, target, view.focal))
 
 

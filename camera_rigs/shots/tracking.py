@@ -10,7 +10,7 @@ import itertools
 import numpy as np
 
 from camera_rigs.scene import Scene, Span, View
-from camera_rigs.shot import Draft, Move, Shot, keyframe_at
+from camera_rigs.shot import Draft, Move, keyframe_at, record
 from camera_rigs.shots.pace import RIG_SPEED
 from camera_rigs.smoothing import at, smooth
 from camera_rigs.spherical import Array, spherical_to_cartesian
@@ -74,7 +74,7 @@ def plan_tracking(
         "theta": view.theta,
         "phi": phi,
     }
-    shot = Shot("tracking", view.scale.name, span.start, span.end, parameters, keyframes)
+    shot = record("tracking", view.scale, span, parameters, keyframes)
     return Draft(shot, Move.level(span, eye, target, view.focal))
 
 
