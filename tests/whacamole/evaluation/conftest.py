@@ -69,7 +69,7 @@ def make_person(
         betas=pose.betas,
         expression=smooth_walk(rng, frames, 0.5, 10),
         global_orient=(turn * upright).as_rotvec(),
-        transl=place + moving * smooth_walk(rng, frames, 0.5, 3) * [1, 1, 0.1] + [0, 0, 1.3],
+        transl=place + moving * smooth_walk(rng, frames, 0.5, 3) * [1, 1, 0.1] + [0, 0, 0.95],
         body_pose=moving * smooth_walk(rng, frames, 0.2, 63).reshape(frames, 21, 3),
         left_hand_pose=smooth_walk(rng, frames, 0.1, 45).reshape(frames, 15, 3),
         right_hand_pose=smooth_walk(rng, frames, 0.1, 45).reshape(frames, 15, 3),
@@ -119,7 +119,7 @@ def make_scene(
     }
     contact = {
         "part_names": np.array(["left_foot", "right_foot"]),
-        "ground_contact": joints[:, :, [10, 11], 2] < 0.2,
+        "ground_contact": joints[:, :, [10, 11], 2] < 0.07,
     }
     edges = np.linspace(0, frames - 1, len(shots) + 1).round().astype(int)
     shot = {
@@ -199,4 +199,55 @@ def make() -> dict[str, Callable[..., Any]]:
         "dataset": write_dataset,
         "prediction": make_prediction,
         "predictions": write_predictions,
+        "smpl": make_smpl,
     }
+
+
+def make_smpl(seed: int, joints: int = 24, vertices: int = 200) -> Arrays:
+    """A model in the schema of SMPL (24 joints) or SMPL-H (52) on some of the embedded body's vertices."""
+    rng = np.random.default_rng(seed)
+    body = BodyModel.embedded()
+    kept = np.linspace(0, body.num_vertices - 1, vertices).astype(int)
+    template = body.v_template[kept].astype(np.float64) * rng.uniform(0.95, 1.05)
+    rest = body.rest_joints(np.zeros(10))
+    hands = {24: [[28], [43]], 52: [[j] for j in range(25, 55)]}[joints]
+    places = np.concatenate([rest[:22], *(rest[h] for h in hands)])
+    regressor = np.zeros((joints, vertices))
+    for row, place in enumerate(places):
+        nearest = np.argsort(np.linalg.norm(template - place, axis=1))[:5]
+        regressor[row, nearest] = 0.2
+    weights = np.zeros((vertices, joints))
+    weights[:, :22] = body.weights[kept, :22]
+    weights[:, 15] += body.weights[kept, 22:25].sum(axis=1)
+    if joints == 24:
+        weights[:, 22] = body.weights[kept, 25:40].sum(axis=1)
+        weights[:, 23] = body.weights[kept, 40:].sum(axis=1)
+    else:
+        weights[:, 22:] = body.weights[kept, 25:]
+    parents = [2**32 - 1, 0, 0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 9, 9, 12, 13, 14, 16, 17, 18, 19]
+    if joints == 24:
+        parents += [20, 21]
+    else:
+        parents += [20 if i % 3 == 0 else 21 + i for i in range(15)]
+        parents += [21 if i % 3 == 0 else 36 + i for i in range(15)]
+    return {
+        "v_template": template,
+        "shapedirs": body.arrays.shapedirs[kept].astype(np.float64),
+        "posedirs": 1e-3 * rng.normal(size=(vertices, 3, 9 * (joints - 1))),
+        "J_regressor": regressor,
+        "weights": weights,
+        "kintree_table": np.array([parents, range(joints)]),
+        "f": np.zeros((1, 3), dtype=np.uint32),
+    }
+
+
+@pytest.fixture(scope="session")
+def models(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder of body model files: made-up SMPL and SMPL-H, and the embedded body as SMPL-X."""
+    folder = tmp_path_factory.mktemp("models")
+    for gender, seed in {"NEUTRAL": 0, "MALE": 1, "FEMALE": 2}.items():
+        np.savez(folder / f"SMPL_{gender}.npz", **make_smpl(seed))
+    np.savez(folder / "SMPLH_NEUTRAL.npz", **make_smpl(3, joints=52))
+    for gender in ("NEUTRAL", "MALE"):
+        BodyModel.embedded().export_full(folder / f"SMPLX_{gender}.npz")
+    return folder

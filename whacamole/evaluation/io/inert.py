@@ -131,6 +131,11 @@ def _storage_from_bytes(data: bytes) -> Any:
     return _legacy_torch(data)
 
 
+def _reconstructor(kind: Any, _base: object, _state: object) -> Any:
+    """How pickle protocols 0 and 1 make an object."""
+    return kind()
+
+
 def _encode(text: str, _encoding: str) -> bytes:
     return text.encode("latin1")
 
@@ -144,6 +149,8 @@ _NAMES: dict[tuple[str, str], Callable[..., Any]] = {
     ("builtins", "dict"): dict,
     ("builtins", "list"): list,
     ("__builtin__", "dict"): dict,
+    **{(module, "_reconstructor"): _reconstructor for module in ("copy_reg", "copyreg")},
+    **{(module, "object"): object for module in ("__builtin__", "builtins")},
     ("joblib.numpy_pickle", "NumpyArrayWrapper"): _JoblibArray,
     ("chumpy.ch", "Ch"): _Chumpy,
     ("scipy.sparse.csc", "csc_matrix"): _SparseMatrix,
