@@ -14,9 +14,9 @@ from typing import Any
 from render_jobs.devices import parse_device
 from render_jobs.errors import EngineError, RenderJobError, WorkerError
 from render_jobs.images import PARTIAL_FOLDER, is_complete
+from render_jobs.protocol import BAD_JOB, ENGINES, LOG_FILE, NO_ENGINE
 from render_jobs.storage import OUTPUT_FOLDER, JobRecord, read_record
 from render_jobs.watch import ChildEnd, describe_end, watch_child
-from render_jobs.worker import BAD_JOB, LOG_FILE, NO_ENGINE
 
 OnFrame = Callable[[int], None]
 
@@ -59,7 +59,7 @@ def run_job(
 
     Args:
         folder: the job folder; no other process may be rendering it.
-        engine: ``cycles``.
+        engine: ``cycles`` or ``raster``.
         device: ``auto``, ``cpu``, ``gpu`` or an interface as ``cuda:0``.
         threads: CPU threads of the child; 0 takes all cores.
         timeout: seconds without a finished frame after which the child counts as hung and is killed; None
@@ -78,6 +78,8 @@ def run_job(
     """
     folder = Path(folder)
     parse_device(device)
+    if engine not in ENGINES:
+        raise RenderJobError(f"engine {engine!r} is not one of {', '.join(ENGINES)}")
     record = read_record(folder)
     _clear_remains(folder)
     began = time.monotonic()

@@ -2,7 +2,7 @@
 
 Prints one JSON object a line to stdout: ``start``, ``frame``, ``done`` or ``error``. All else that Blender
 and Python print goes to ``render.log`` in the job folder. Frames already there are not rendered again.
-The exit status is 0 when every frame is there, :data:`BAD_JOB` or :data:`NO_ENGINE` where another try cannot
+The exit status is 0 when every frame is there, ``BAD_JOB`` or ``NO_ENGINE`` where another try cannot
 help, else 1.
 """
 
@@ -26,13 +26,8 @@ from render_jobs.errors import EngineError, RenderJobError
 from render_jobs.images import is_complete
 from render_jobs.job import RenderJob
 from render_jobs.processes import die_with_parent
+from render_jobs.protocol import BAD_JOB, ENGINES, FAILED, LOG_FILE, NO_ENGINE
 from render_jobs.storage import OUTPUT_FOLDER
-
-ENGINES = {"cycles": "render_jobs.blender.engine"}
-"""The module behind each engine; imported only when used."""
-
-LOG_FILE = "render.log"
-FAILED, BAD_JOB, NO_ENGINE = 1, 2, 3
 
 
 class Reporter:

@@ -11,7 +11,8 @@ import bpy
 from mathutils import Vector
 
 from render_jobs.blender.compat import SKY_TYPE
-from render_jobs.blender.materials import linear, load_image
+from render_jobs.blender.materials import load_image
+from render_jobs.colour import linear
 from render_jobs.scene import Environment, Lamp, Sun
 
 LIGHT_TYPES: dict[str, Literal["SUN", "AREA", "POINT", "SPOT"]] = {

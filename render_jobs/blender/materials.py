@@ -6,21 +6,14 @@ from pathlib import Path
 from typing import Any
 
 import bpy
-import numpy as np
 
+from render_jobs.colour import linear
 from render_jobs.errors import RenderJobError
-from render_jobs.scene import Colour, Material
+from render_jobs.scene import Material
 
 SKIN_RADII = (1.0, 0.35, 0.2)
 """How far red, green and blue light travels below skin, relative to the scale."""
 SKIN_SCALE_M = 0.008
-
-
-def linear(colour: Colour) -> tuple[float, float, float]:
-    """sRGB in 0..1 as linear light (IEC 61966-2-1)."""
-    value = np.asarray(colour)
-    curve = np.where(value <= 0.04045, value / 12.92, ((value + 0.055) / 1.055) ** 2.4)
-    return float(curve[0]), float(curve[1]), float(curve[2])
 
 
 def build_material(material: Material) -> Any:

@@ -1,0 +1,25 @@
+"""Colour arithmetic."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from render_jobs.scene import Colour
+
+
+def linear(colour: Colour) -> tuple[float, float, float]:
+    """sRGB in 0..1 as linear light (IEC 61966-2-1)."""
+    value = np.asarray(colour)
+    curve = np.where(value <= 0.04045, value / 12.92, ((value + 0.055) / 1.055) ** 2.4)
+    return float(curve[0]), float(curve[1]), float(curve[2])
+
+
+def encoded(light: NDArray[Any]) -> NDArray[np.uint8]:
+    """Linear light as 8-bit sRGB (IEC 61966-2-1), clipped."""
+    value = np.clip(light, 0.0, 1.0)
+    curve = np.where(value <= 0.0031308, value * 12.92, 1.055 * value ** (1 / 2.4) - 0.055)
+    pixels: NDArray[np.uint8] = np.rint(curve * 255.0).astype(np.uint8)
+    return pixels

@@ -1,0 +1,83 @@
+"""The raster engine's frames, put in place like those of any engine."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any, NoReturn
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from render_jobs.colour import encoded
+from render_jobs.devices import DeviceChoice
+from render_jobs.images import Writer, label_writer, picture_writer, publish_frame
+from render_jobs.job import RenderJob
+from render_jobs.optics import flow_at_infinity
+from render_jobs.passes import LABEL_PASSES
+from render_jobs.raster.context import open_context
+
+WHITE = 4.0
+"""Linear light that becomes white under the ``agx`` tone: two stops of highlights are kept."""
+
+
+def render(
+    job: RenderJob,
+    frames: Sequence[int],
+    out: Path,
+    scratch: Path,
+    device: DeviceChoice,
+    threads: int,
+    on_start: Callable[[str], None],
+    on_frame: Callable[[int, float, float], None],
+    abort: Callable[[BaseException], NoReturn],
+) -> None:
+    """Render frames of a job by OpenGL; arguments as in :func:`render_jobs.blender.engine.render`.
+
+    The driver chooses the device, so ``device`` does not matter; nothing is written to ``scratch``; motion
+    blur is not drawn.
+
+    Raises:
+        RenderJobError: a texture cannot be read.
+        EngineError: there is no OpenGL, or it cannot show the job.
+    """
+    devices = open_context(threads)
+    from render_jobs.raster.canvas import Canvas  # needs the context
+
+    canvas = Canvas(job)
+    on_start(devices)
+    for frame in frames:
+        began, cpu_began = time.perf_counter(), time.process_time()
+        canvas.set_frame(frame)
+        writers: dict[str, Writer] = {}
+        if any(name in LABEL_PASSES for name in job.passes):
+            for name, values in _labels(job, canvas.labels(), frame).items():
+                writers[name] = label_writer(name, values, job.max_track_id)
+        if "rgb" in job.passes:
+            writers["rgb"] = picture_writer(_picture(job, canvas.picture()), job.image_format)
+        publish_frame(out, frame, writers, job.image_format)
+        on_frame(frame, time.perf_counter() - began, time.process_time() - cpu_began)
+
+
+def _labels(job: RenderJob, drawn: tuple[NDArray[np.float32], ...], frame: int) -> dict[str, NDArray[Any]]:
+    surface, normal, flow = drawn
+    hit = surface[..., 1] > 0
+    K, pose = job.camera_with_neighbours()
+    now, after = frame + 1, frame + 2
+    beyond = flow_at_infinity(K[now], K[after], pose[now], pose[after], job.camera.width, job.camera.height)
+    found: dict[str, NDArray[Any]] = {
+        "mask": np.rint(surface[..., 0]).astype(np.int32),
+        "depth": np.where(hit, surface[..., 1], np.float32(np.inf)),
+        "normal": np.where(hit[..., None], normal, np.float32(0.0)),
+        "flow": np.where(hit[..., None], flow, beyond),
+    }
+    return {name: values for name, values in found.items() if name in job.passes}
+
+
+def _picture(job: RenderJob, light: NDArray[np.float32]) -> Image.Image:
+    exposed = light * 2.0**job.exposure
+    if job.tone == "agx":  # highlights roll off instead of clipping (Reinhard 2002, extended)
+        exposed = exposed * (1.0 + exposed / WHITE**2) / (1.0 + exposed)
+    return Image.fromarray(encoded(exposed))
