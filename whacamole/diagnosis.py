@@ -7,21 +7,26 @@ import re
 import shutil
 import sys
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Literal
 
 import psutil
 
-from whacamole import system_libraries
+from render_jobs import system_libraries
+from render_jobs.probe import TRIES, Probe, probe
 
-__all__ = ["Check", "diagnose", "report_as_dict"]
+__all__ = ["Check", "can_render", "diagnose", "report_as_dict"]
 
 MIN_FREE_MEMORY = 2 * 2**30
 """One render job takes about 1 GiB, the parent another half; below this a run may be killed. Bytes."""
 
 MIN_FREE_DISK = 2 * 2**30
 """A 640x360 sequence of 240 frames with RGB, mask and depth takes some 0.2 GiB. Bytes."""
+
+MAIN_ENGINE = "cycles"
+"""The engine that needs neither a GPU nor OpenGL; without it nothing can be rendered."""
 
 _CONSTRAINED = 'pip install --constraint constraints.txt "whacamole"'
 
@@ -56,6 +61,7 @@ def diagnose(folder: Path) -> list[Check]:
         _packages(),
         _blender_libraries(),
         _opengl_libraries(),
+        *_engines(),
         _cores(),
         _memory(),
         _disk(folder),
@@ -146,6 +152,19 @@ def _opengl_libraries() -> Check:
         return Check("OpenGL libraries", "ok", ", ".join(system_libraries.OPENGL_LIBRARIES))
     remedy = system_libraries.install_line(missing)
     return Check("OpenGL libraries", "warning", f"missing: {', '.join(missing)}", remedy)
+
+
+def _engines() -> list[Check]:
+    """One check an engine, all tried at the same time, each in a process of its own."""
+    with ThreadPoolExecutor(len(TRIES)) as pool:
+        return [_engine(outcome) for outcome in pool.map(probe, TRIES)]
+
+
+def _engine(outcome: Probe) -> Check:
+    if outcome.works:
+        return Check(outcome.name, "ok", outcome.found)
+    state: Literal["error", "warning"] = "error" if outcome.name == MAIN_ENGINE else "warning"
+    return Check(outcome.name, state, outcome.found, outcome.remedy)
 
 
 def _cores() -> Check:

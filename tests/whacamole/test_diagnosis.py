@@ -1,17 +1,24 @@
 """What `doctor` says of machines that lack one thing each."""
 
 import importlib.metadata
+import json
 import os
 import platform
 import shutil
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import psutil
 import pytest
+from typer.testing import CliRunner
 
-from whacamole import diagnosis, system_libraries
+from render_jobs import system_libraries
+from render_jobs.probe import Probe
+from whacamole import diagnosis
+from whacamole.cli import app
 from whacamole.diagnosis import Check, can_render, report_as_dict
 
 Patch = pytest.MonkeyPatch
@@ -80,6 +87,23 @@ def test_missing_opengl_is_a_warning(monkeypatch: Patch) -> None:
     assert can_render([check])
 
 
+@pytest.mark.parametrize(("engine", "state"), [("cycles", "error"), ("workbench", "warning")])
+def test_only_the_main_engine_is_needed(engine: str, state: str, monkeypatch: Patch) -> None:
+    monkeypatch.setattr(diagnosis, "probe", lambda name: Probe(name, name != engine, "seen", "mend it"))
+    checks = {check.name: check for check in diagnosis._engines()}
+    assert (checks[engine].state, checks[engine].remedy) == (state, "mend it")
+    assert {check.state for name, check in checks.items() if name != engine} == {"ok"}
+
+
+@pytest.mark.blender
+@pytest.mark.slow
+def test_this_machine_is_looked_at_whole(tmp_path: Path) -> None:
+    checks = diagnosis.diagnose(tmp_path)
+    assert len({check.name for check in checks}) == len(checks)
+    assert all(check.found for check in checks)
+    assert all(bool(check.remedy) == (check.state != "ok") for check in checks)
+
+
 def test_little_memory_is_a_warning(monkeypatch: Patch) -> None:
     memory = SimpleNamespace(available=2**30, total=4 * 2**30)
     monkeypatch.setattr(psutil, "virtual_memory", lambda: memory)
@@ -114,3 +138,48 @@ def test_the_report_holds_plain_values() -> None:
             {"name": "b", "state": "error", "found": "broken", "remedy": "mend it"},
         ],
     }
+
+
+# --- The command -----------------------------------------------------------------------------------------
+
+
+def _doctor(patch: Patch, checks: list[Check], *options: str) -> Any:
+    patch.setattr(diagnosis, "diagnose", lambda _folder: checks)
+    return CliRunner().invoke(app, ["doctor", *options])
+
+
+FINE = Check("python", "ok", "3.11.7")
+BROKEN = Check("cycles", "error", "libX11.so.6: [cannot] open", "sudo apt-get install libx11-6")
+
+
+def test_the_command_says_that_all_is_well(monkeypatch: Patch) -> None:
+    result = _doctor(monkeypatch, [FINE])
+    assert result.exit_code == 0
+    assert "3.11.7" in result.output
+    assert "This machine can render." in result.output
+
+
+def test_the_command_ends_with_the_remedies(monkeypatch: Patch) -> None:
+    result = _doctor(monkeypatch, [FINE, BROKEN])
+    assert result.exit_code == 1
+    assert "libX11.so.6: [cannot] open" in result.output
+    assert result.output.endswith("cycles: sudo apt-get install libx11-6\nThis machine cannot render yet.\n")
+
+
+def test_the_command_speaks_json(monkeypatch: Patch) -> None:
+    result = _doctor(monkeypatch, [FINE, BROKEN], "--json")
+    assert result.exit_code == 1
+    assert json.loads(result.output) == report_as_dict([FINE, BROKEN])
+
+
+def test_the_command_can_be_quiet(monkeypatch: Patch) -> None:
+    result = _doctor(monkeypatch, [BROKEN], "--quiet")
+    assert (result.exit_code, result.output) == (1, "")
+
+
+def test_without_a_package_it_is_still_one_line(monkeypatch: Patch) -> None:
+    monkeypatch.setitem(sys.modules, "whacamole.diagnosis", None)
+    result = CliRunner().invoke(app, ["doctor"])
+    assert result.exit_code == 1
+    assert result.output.count("\n") == 1
+    assert "pip install --constraint constraints.txt" in result.output

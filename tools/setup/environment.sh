@@ -117,8 +117,8 @@ need_venv() {
 # need_system_packages PYTHON  all system packages this Python lacks, in one go and before the large download.
 # What Blender's module links to must be there; what only the OpenGL engines open may be missing.
 need_system_packages() {
-  required=$("$1" -P whacamole/system_libraries.py --required)
-  optional=$("$1" -P whacamole/system_libraries.py --optional)
+  required=$("$1" -P render_jobs/system_libraries.py --required)
+  optional=$("$1" -P render_jobs/system_libraries.py --optional)
   "$1" -c 'import ensurepip, venv' >/dev/null 2>&1 || required="python3.11-venv $required"
   # shellcheck disable=SC2086  # lists of names, one word each
   if [ -n "$required" ]; then

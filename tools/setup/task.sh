@@ -23,7 +23,11 @@ TEXT
 
 demo() {
   prepare ""
-  .venv/bin/whacamole render --out demo --size 320x180 --frames 24 --shots arc,tracking --limit 2
+  # A runner to track, a dancer and a pair to circle: what each shot is for. The last one names its picture.
+  for motion in run dance_a duet_00; do
+    .venv/bin/whacamole render --motions "whacamole/assets/motions/$motion.npz" --out demo \
+      --shots arc,tracking --size 320x180 --frames 24 --quality draft
+  done
 }
 
 run_tests() {

@@ -25,7 +25,11 @@ def doctor(
 
     The exit code is 0 if `whacamole render` can run here, else 1.
     """
-    from whacamole.diagnosis import can_render, diagnose, report_as_dict
+    try:
+        from whacamole.diagnosis import can_render, diagnose, report_as_dict
+    except ImportError as error:
+        typer.echo(f"packages: {error}; pip install --constraint constraints.txt whacamole", err=True)
+        raise typer.Exit(1) from None
 
     checks = diagnose(out)
     if json_output:

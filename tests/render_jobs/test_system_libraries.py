@@ -9,7 +9,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from whacamole import system_libraries
+from render_jobs import system_libraries
 
 LISTING = """\
 \tlinux-vdso.so.1 (0x00007ffc4b5f2000)
