@@ -11,7 +11,7 @@
             images = [sequence.rgb(frame) for frame in clip]
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -40,15 +40,12 @@ class Sequence:
     Attributes:
         id: its name.
         layout: where its files are.
+        facts: what ``sequence.json`` says: motion, shots, stage, size, checksums.
     """
 
     id: str
     layout: SequenceLayout
-
-    @cached_property
-    def facts(self) -> dict[str, Any]:
-        """What ``sequence.json`` says: motion, shots, stage, size, checksums."""
-        return read_summary(self.layout)
+    facts: Mapping[str, Any]
 
     @cached_property
     def camera(self) -> Arrays:
@@ -174,7 +171,8 @@ class Dataset:
         sequence_id = self.ids[key] if isinstance(key, int) else key
         if sequence_id not in self.ids:
             raise DatasetError(f"{self.layout.root}: no sequence {key!r}; see `whacamole status`")
-        return Sequence(sequence_id, self.layout.sequence(sequence_id))
+        sequence = self.layout.sequence(sequence_id)
+        return Sequence(sequence_id, sequence, read_summary(sequence))
 
     def split(self, name: str) -> "Dataset":
         """Return the sequences listed in ``splits/<name>.txt`` as a dataset of their own.
@@ -211,7 +209,7 @@ def open_dataset(path: Path | str) -> Dataset:
 
 def _arrays(path: Path) -> Arrays:
     try:
-        with np.load(path, allow_pickle=False) as stored:
+        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as stored:
             return {key: stored[key] for key in stored.files}
     except (OSError, ValueError, EOFError, BadZipFile) as error:
         raise DatasetError(f"{path}: not readable ({error}); render the sequence again") from error

@@ -1,4 +1,4 @@
-"""What a motion file becomes: people in one world at 30 fps, z up, metres."""
+"""What a motion file becomes: people in one world at one frame rate, z up, metres."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 FloatArray = NDArray[np.float64]
 
 FPS = 30.0
-"""Frame rate of every :class:`Motion`."""
+"""Frame rate of a :class:`Motion` unless another is asked for."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class MotionPerson:
 
 @dataclass(frozen=True)
 class Motion:
-    """One or several people in one world: 30 fps, z up, metres, near the ground z = 0.
+    """One or several people in one world: ``fps`` frames a second, z up, metres, near the ground z = 0.
 
     "Near": the lowest point of a nominal skeleton touches z = 0, by one shift for the whole scene, so that a
     pair keeps its relative height. The exact contact depends on the body model and is made where the body is.

@@ -1,4 +1,4 @@
-"""From any frame rate to 30 fps: rates as exact fractions, rotations by slerp, positions linearly."""
+"""From any frame rate to another: rates as exact fractions, rotations by slerp, positions linearly."""
 
 from __future__ import annotations
 
@@ -11,6 +11,9 @@ from scipy.spatial.transform import Rotation
 from whacamole.motion.data import FPS, FloatArray
 
 MIN_RATE, MAX_RATE = 1, 1000
+
+FILM_RATE = Fraction(int(FPS))
+"""The rate of a motion unless another is asked for."""
 
 
 def rational_rate(rate: float) -> Fraction:
@@ -29,21 +32,21 @@ def rational_rate(rate: float) -> Fraction:
     return Fraction(rate).limit_denominator(1000)
 
 
-def resampled_length(num_frames: int, rate: Fraction) -> int:
-    """Number of frames at 30 fps that lie within ``num_frames`` frames at ``rate`` (no extrapolation)."""
-    return int((num_frames - 1) * Fraction(int(FPS)) / rate) + 1 if num_frames else 0
+def resampled_length(num_frames: int, rate: Fraction, fps: Fraction = FILM_RATE) -> int:
+    """Number of frames at ``fps`` that lie within ``num_frames`` frames at ``rate`` (no extrapolation)."""
+    return int((num_frames - 1) * fps / rate) + 1 if num_frames else 0
 
 
 class Resampler:
-    """Maps series of ``num_frames`` at ``rate`` to 30 fps.
+    """Maps series of ``num_frames`` at ``rate`` to ``fps``.
 
-    Frame k lies at source position k·rate/30, computed in fractions: where the ratio is whole, frames are
+    Frame k lies at source position k·rate/fps, computed in fractions: where the ratio is whole, frames are
     copied and not a bit changes.
     """
 
-    def __init__(self, num_frames: int, rate: Fraction) -> None:
-        step = rate / Fraction(int(FPS))
-        at = [k * step for k in range(resampled_length(num_frames, rate))]
+    def __init__(self, num_frames: int, rate: Fraction, fps: Fraction = FILM_RATE) -> None:
+        step = rate / fps
+        at = [k * step for k in range(resampled_length(num_frames, rate, fps))]
         self._low = np.array([int(s) for s in at], dtype=np.intp)
         self._fraction = np.array([float(s - int(s)) for s in at])
         self._high = np.minimum(self._low + 1, num_frames - 1)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from whacamole.errors import MotionError
 from whacamole.motion.container import open_record
-from whacamole.motion.data import Motion, MotionFile
+from whacamole.motion.data import FPS, Motion, MotionFile
 from whacamole.motion.find import find_motions, recognise
 from whacamole.motion.scene import RestPelvis, build_motion, nominal_rest_pelvis
 from whacamole.motion.up_axis import AXES
@@ -16,12 +16,14 @@ def read_motion(
     file: MotionFile | Path | str,
     *,
     up: str | None = None,
+    fps: float = FPS,
     rest_pelvis: RestPelvis = nominal_rest_pelvis,
 ) -> Motion:
     """Reads ``file``, an entry of :func:`find_motions` or the path of one motion.
 
-    ``up`` (``"+z"``, ``"-y"`` …) overrides the detected up axis. ``rest_pelvis`` gives the exact rest
-    pelvis of the model the file was made with where that model is at hand; else the mean shape's is taken.
+    ``fps`` is the frame rate of the result. ``up`` (``"+z"``, ``"-y"`` …) overrides the detected up axis.
+    ``rest_pelvis`` gives the exact rest pelvis of the model the file was made with where that model is at
+    hand; else the mean shape's is taken.
 
     Raises :class:`MotionError`, one line that names the file, what is wrong and what to do.
     """
@@ -46,4 +48,5 @@ def read_motion(
         stated=reader.up_stated,
         up=up,
         rest_pelvis=rest_pelvis,
+        fps=fps,
     )

@@ -1,4 +1,4 @@
-"""From the people of a file to a :class:`Motion`: 30 fps, z up, near the ground."""
+"""From the people of a file to a :class:`Motion`: one frame rate, z up, near the ground."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from scipy.spatial.transform import Rotation
 
 from whacamole.errors import MotionError
 from whacamole.motion import skeleton, up_axis
-from whacamole.motion.data import FloatArray, Motion, MotionPerson
-from whacamole.motion.rate import Resampler
+from whacamole.motion.data import FPS, FloatArray, Motion, MotionPerson
+from whacamole.motion.rate import Resampler, rational_rate
 from whacamole.motion.reader import NUM_BODY, NUM_HAND, RawPerson
 
 RestPelvis = Callable[[str, str, FloatArray], FloatArray]
 """(model, gender, betas) to the rest pelvis j0 (3,) [m] of the model the file was made with."""
 
 MAX_LENGTH_DIFFERENCE = 5
-"""Frames at 30 fps by which the two takes of a pair may differ; the longer is cut."""
+"""Frames by which the two takes of a pair may differ; the longer is cut."""
 
 _HAND_MOVES = 0.02
 
@@ -45,19 +45,20 @@ def build_motion(
     stated: bool = True,
     up: str | None = None,
     rest_pelvis: RestPelvis = nominal_rest_pelvis,
+    fps: float = FPS,
 ) -> Motion:
     """One scene from ``raw``; ``up``, one of :data:`up_axis.AXES`, overrides convention and content.
 
-    Raises :class:`MotionError` where the takes of a pair differ in length, or nothing is left at 30 fps.
+    Raises :class:`MotionError` where the takes of a pair differ in length, or nothing is left at ``fps``.
     """
-    people = _equal_lengths([_resample(person, rest_pelvis) for person in raw], path)
+    people = _equal_lengths([_resample(person, rest_pelvis, fps) for person in raw], path)
     joints, points = _pose(people)
-    axis = up or up_axis.choose(convention, joints, points, stated=stated)
+    axis = up or up_axis.choose(convention, joints, points, fps=fps, stated=stated)
     people = [_turn(person, up_axis.to_z_up(axis)) for person in people]
     _, points = _pose(people)
     floor = float(np.percentile((points[..., 2] - skeleton.TOUCH_RADII).min(axis=(0, 2)), 2.0))
     grounded = tuple(replace(p, pelvis=p.pelvis - np.array([0.0, 0.0, floor])) for p in people)
-    return Motion(id, source, path, grounded, len(grounded) > 1, licence, axis)
+    return Motion(id, source, path, grounded, len(grounded) > 1, licence, axis, fps)
 
 
 def _pose(people: list[MotionPerson]) -> tuple[FloatArray, FloatArray]:
@@ -67,11 +68,11 @@ def _pose(people: list[MotionPerson]) -> tuple[FloatArray, FloatArray]:
     return joints, np.stack([skeleton.touch_points(*pose) for pose in posed])
 
 
-def _resample(raw: RawPerson, rest_pelvis: RestPelvis) -> MotionPerson:
-    resampler = Resampler(len(raw.pose), raw.rate)
+def _resample(raw: RawPerson, rest_pelvis: RestPelvis, fps: float) -> MotionPerson:
+    resampler = Resampler(len(raw.pose), raw.rate, rational_rate(fps))
     T = resampler.num_frames
     if T < 2:
-        raise MotionError(f"{raw.where}: shorter than two frames at 30 fps; give a longer motion")
+        raise MotionError(f"{raw.where}: shorter than two frames at {fps:g} fps; give a longer motion")
     pose = resampler.rotations(raw.pose)
     jaw, leye, reye, left, right = _face_and_hands(pose)
     expression = np.zeros((T, 10))
@@ -113,7 +114,7 @@ def _equal_lengths(people: list[MotionPerson], path: Path) -> list[MotionPerson]
     T = min(lengths)
     if max(lengths) - T > MAX_LENGTH_DIFFERENCE:
         raise MotionError(
-            f"{path}: the people of the pair have {' and '.join(map(str, lengths))} frames at 30 fps; "
+            f"{path}: the people of the pair have {' and '.join(map(str, lengths))} frames; "
             "give two takes of one length"
         )
     return [_cut(person, T) for person in people]

@@ -56,14 +56,14 @@ def to_z_up(axis: str) -> Rotation:
     return Rotation.from_rotvec(turns[axis])
 
 
-def evidence(joints: FloatArray, points: FloatArray) -> dict[str, Evidence]:
+def evidence(joints: FloatArray, points: FloatArray, fps: float = FPS) -> dict[str, Evidence]:
     """The evidence for each axis.
 
-    ``joints (P,T,22,3)`` and ``points (P,T,C,3)`` of the nominal skeleton at 30 fps, in the file's axes [m].
+    ``joints (P,T,22,3)`` and ``points (P,T,C,3)`` of the nominal skeleton at ``fps``, in the file's axes [m].
     """
     spine = joints[:, :, JOINT_NAMES.index("neck")] - joints[:, :, 0]
     spine /= np.linalg.norm(spine, axis=-1, keepdims=True)
-    speed = np.linalg.norm(np.gradient(points, axis=1), axis=-1) * FPS
+    speed = np.linalg.norm(np.gradient(points, axis=1), axis=-1) * fps
     result = {}
     for name, axis in AXES.items():
         direction = np.array(axis, dtype=np.float64)
@@ -74,12 +74,14 @@ def evidence(joints: FloatArray, points: FloatArray) -> dict[str, Evidence]:
     return result
 
 
-def choose(convention: str, joints: FloatArray, points: FloatArray, *, stated: bool = True) -> str:
+def choose(
+    convention: str, joints: FloatArray, points: FloatArray, *, fps: float = FPS, stated: bool = True
+) -> str:
     """The up axis by the rule above; ``stated`` says that the format's documents name the ``convention``.
 
     Other arguments as for :func:`evidence`.
     """
-    found = evidence(joints, points)
+    found = evidence(joints, points, fps)
     best = max(found, key=lambda name: sum(found[name]))
     if sum(found[best]) <= sum(found[convention]) + MARGIN:
         return convention

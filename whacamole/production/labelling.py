@@ -55,7 +55,16 @@ def _labelled(person: Performer) -> LabelledPerson:
 
 
 def _worn(person: Performer) -> Callable[[int], list[WorldMesh]] | None:
-    """Return the clothes and hair of a frame; the first mesh of a performer is the body."""
+    """Return the clothes and hair of a frame; the first mesh of a performer is the skin."""
     if len(person.meshes) == 1:
         return None
-    return lambda frame: [(mesh.frame(frame), mesh.faces) for mesh in person.meshes[1:]]
+    worn = [(mesh, _triangles(mesh.faces)) for mesh in person.meshes[1:]]
+    return lambda frame: [(mesh.frame(frame), triangles) for mesh, triangles in worn]
+
+
+def _triangles(faces: NDArray[np.int32]) -> NDArray[np.int32]:
+    """Return (F, 3) triangles of (F, 3) or (F, 4) faces; −1 in the fourth column marks a triangle."""
+    if faces.shape[1] == 3:
+        return faces
+    quads = faces[faces[:, 3] >= 0]
+    return np.concatenate([faces[:, :3], quads[:, [0, 2, 3]]])

@@ -1,13 +1,13 @@
 """The picture of a sequence to look at first."""
 
-from PIL import Image
-
-from whacamole.dataset import SequenceLayout
+from whacamole.body import BodyModel
+from whacamole.dataset import Sequence
+from whacamole.labels.preview import preview_strip
 
 __all__ = ["write_preview"]
 
 
-def write_preview(sequence: SequenceLayout) -> None:
-    """Write ``preview.jpg``."""
-    frames = sorted((sequence.folder / "rgb").iterdir())
-    Image.open(frames[0]).convert("RGB").save(sequence.preview)
+def write_preview(sequence: Sequence, body: BodyModel) -> None:
+    """Write ``preview.jpg``: frames as rendered, and below them the stored labels drawn over the pixels."""
+    strip = preview_strip(sequence.rgb, sequence.people, sequence.camera, body, mask=sequence.mask)
+    strip.save(sequence.layout.preview, quality=88)

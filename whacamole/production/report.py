@@ -9,6 +9,7 @@ from rich.console import Console
 from rich.table import Table
 
 from whacamole.dataset import DatasetLayout, read_summary, side_of
+from whacamole.motion import FPS
 from whacamole.production.worklist import Worklist
 
 __all__ = ["Production"]
@@ -87,8 +88,9 @@ class Production:
     def _plan_table(self) -> Table:
         table = Table("sequence", "motion", "format", "people", "frames")
         for order in self.worklist.orders:
-            frames, asked = order.motion.num_frames, order.recipe.frames
-            shown = "?" if frames is None else str(min(frames, asked or frames))
+            whole, asked = order.motion.num_frames, order.recipe.frames
+            filmed = None if whole is None else int((whole - 1) * order.recipe.fps / FPS) - 1
+            shown = "?" if filmed is None else str(min(filmed, asked or filmed))
             people = str(order.motion.num_people)
             table.add_row(order.sequence_id, str(order.motion.path), order.motion.source, people, shown)
         return table

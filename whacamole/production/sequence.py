@@ -10,7 +10,7 @@ from typing import Any
 from camera_rigs import Plan
 from render_jobs import RenderJob, quality_preset, run_job
 from whacamole.body import BodyModel
-from whacamole.dataset import DatasetLayout, SequenceLayout, write_summary
+from whacamole.dataset import DatasetLayout, Sequence, SequenceLayout, write_summary
 from whacamole.errors import DatasetError, MotionError, TakeError
 from whacamole.motion import Motion, read_motion
 from whacamole.production.filming import camera_neighbours, plan_camera
@@ -22,6 +22,9 @@ from whacamole.seeds import generator
 from whacamole.take import Take, stage_take
 
 __all__ = ["Say", "body_of", "make_sequence"]
+
+SUBDIVISION = {"draft": 0, "standard": 0, "high": 1}
+"""Levels for skin and clothes: the mesh is fine enough for all but close-ups."""
 
 Say = Callable[..., None]
 """Called as ``say(event, **facts)`` while the work goes on."""
@@ -79,7 +82,8 @@ def _make_in(
             shot_index=order.shot_index,
             textures=work / "textures",
             stages=recipe.stages,
-            companions=[read_motion(file) for file in order.companions],
+            companions=[read_motion(file, fps=recipe.fps) for file in order.companions],
+            subdivision=SUBDIVISION[recipe.quality],
         )
     except TakeError as error:
         raise TakeError(f"{motion.path}: {error}") from error
@@ -101,12 +105,13 @@ def _make_in(
     labels = write_labels(take, plan, body, rendered, sequence, lambda frame: say("labelled", index=frame))
     for name in job.passes:
         (rendered / name).rename(sequence.folder / name)
-    write_preview(sequence)
-    write_summary(sequence, _facts(order, take, plan, body, labels))
+    facts = _facts(order, take, plan, body, labels)
+    write_preview(Sequence(order.sequence_id, sequence, facts), body)
+    write_summary(sequence, facts)
 
 
 def _read(order: SequenceOrder) -> Motion:
-    motion = read_motion(order.motion)
+    motion = read_motion(order.motion, fps=order.recipe.fps)
     if not motion.people:
         raise MotionError(f"{motion.path}: holds no person; leave the file out")
     return motion

@@ -1,5 +1,6 @@
 """What there is to make: one order a sequence, each independent of all the others."""
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Self
@@ -7,7 +8,7 @@ from typing import Any, Self
 from whacamole.dataset import DatasetLayout, read_summary
 from whacamole.dataset.files import sha256_of
 from whacamole.errors import DatasetError
-from whacamole.motion import MotionFile, embedded_motions, find_motions
+from whacamole.motion import FPS, MotionFile, embedded_motions, find_motions
 from whacamole.recipe import Recipe
 from whacamole.seeds import generator, stable_hash
 
@@ -109,7 +110,8 @@ def companions_of(
     if motion.num_people > 1 or most == 1:
         return ()
     count = int(generator(recipe.seed, motion.id, shot_index, "people").integers(fewest, most + 1)) - 1
-    needed = min(motion.num_frames or 0, recipe.frames + 2 if recipe.frames else motion.num_frames or 0)
+    whole = motion.num_frames or 0  # as MotionFile counts them, at 30 fps
+    needed = min(whole, math.ceil((recipe.frames + 2) * FPS / recipe.fps) if recipe.frames else whole)
     fitting = [
         file
         for file in usable

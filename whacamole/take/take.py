@@ -103,15 +103,17 @@ def stage_take(
     textures: Path,
     stages: tuple[str, ...] = (),
     companions: Sequence[Motion] = (),
+    subdivision: int = 0,
 ) -> Take:
     """Stage sequence ``shot_index`` of ``motion``.
 
     Args:
         frames: most frames to film; 0 for the whole motion.
         seed: of the dataset.
-        textures: folder for texture files that the stage paints.
+        textures: folder for textures made for this take.
         stages: names of stages to draw from; none: all.
         companions: motions of further people, unrelated to the first; those that find no free place stay out.
+        subdivision: levels for skin and clothes.
 
     Raises:
         TakeError: a motion is too short.
@@ -139,7 +141,14 @@ def stage_take(
             moved = other.params[0].transformed(placement.as_transform(), j0)
             people.append((other.motion.id, other.roles[0], moved, body.pose(moved)))
     performers = tuple(
-        Performer(number, motion_id, role, params, posed, role.meshes(body, posed, number))
+        Performer(
+            number,
+            motion_id,
+            role,
+            params,
+            posed,
+            role.meshes(body, params, posed, textures=textures, track_id=number, subdivision=subdivision),
+        )
         for number, (motion_id, role, params, posed) in enumerate(people, start=1)
     )
     paths = np.concatenate([person.posed.joints[:, 0, :2] for person in performers])

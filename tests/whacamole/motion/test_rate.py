@@ -99,3 +99,12 @@ def test_the_input_is_left_alone():
     kept = path.copy()
     Resampler(10, Fraction(25)).linear(path)
     np.testing.assert_array_equal(path, kept)
+
+
+@pytest.mark.parametrize("fps", [15, 30, 60, 120])
+def test_another_rate_passes_through_the_same_moments(fps: int) -> None:
+    time = np.arange(121) / 120.0
+    path = np.stack([time, time**2, np.sin(time)], axis=1)
+    resampler = Resampler(121, Fraction(120), Fraction(fps))
+    assert resampler.num_frames == fps + 1
+    np.testing.assert_array_equal(resampler.linear(path.copy()), path[:: 120 // fps])

@@ -87,7 +87,21 @@ def posed(dataset: Path, exported_body: Path) -> list[tuple[Path, int, Arrays, A
     return found
 
 
-def test_visible_vertices_fall_on_the_mask_at_the_right_depth(posed: Any) -> None:
+def _turned_to_the_camera(points: NDArray[np.float64], faces: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Return which vertices (V, 3) in the camera frame lie on the near side: the far one is not what is seen."""
+    corners = points[faces]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    total = np.zeros_like(points)
+    for corner in range(3):
+        np.add.at(total, faces[:, corner], normal)
+    cosine = -(total * points).sum(axis=1) / np.maximum(
+        np.linalg.norm(total, axis=1) * np.linalg.norm(points, axis=1), 1e-12
+    )
+    return cosine > 0.2
+
+
+def test_visible_vertices_fall_on_the_mask_at_the_right_depth(posed: Any, exported_body: Path) -> None:
+    faces = _load(exported_body)["f"].astype(np.int64)
     for sequence, person, people, camera, vertices in posed:
         pixels = _project(vertices, camera)
         on_mask, gaps, seen_count = [], [], 0
@@ -96,13 +110,14 @@ def test_visible_vertices_fall_on_the_mask_at_the_right_depth(posed: Any) -> Non
             mask = np.asarray(Image.open(sequence / "mask" / f"{frame:06d}.png"))
             column, row = np.floor(at).astype(int).T
             inside = (column >= 0) & (row >= 0) & (column < mask.shape[1]) & (row < mask.shape[0])
+            inside &= _turned_to_the_camera(points, faces)
             column, row, z = column[inside], row[inside], points[inside, 2]
             gap = np.abs(depth[row, column] - z)
             seen = gap < SEEN
             seen_count += int(seen.sum())
             on_mask.append(mask[row, column][seen] == people["track_id"][person])
             gaps.append(gap[seen])
-        assert seen_count > 500 * len(vertices), "too few vertices are seen for this test to mean anything"
+        assert seen_count > 500 * len(vertices), "too few vertices are seen: the test means nothing"
         assert np.concatenate(on_mask).mean() >= 0.99
         assert np.median(np.concatenate(gaps)) < 0.005
         assert np.quantile(np.concatenate(gaps), 0.95) < 0.02
