@@ -50,6 +50,13 @@ def test_relative_links_lead_somewhere(path: Path) -> None:
         assert not anchor or anchor in _anchors(file), f"{link}: no such heading"
 
 
+def test_the_code_names_documents_that_exist() -> None:
+    for folder in (*PACKAGES, "tools", "benchmarks", "examples"):
+        for path in sorted((ROOT / folder).rglob("*.py")):
+            for name in re.findall(r"docs/[\w/-]+\.md", path.read_text()):
+                assert (ROOT / name).exists(), f"{path.relative_to(ROOT)} names {name}"
+
+
 def test_the_licence_is_the_one_that_is_declared() -> None:
     assert PYPROJECT["project"]["license"] == "GPL-3.0-or-later"
     text = (ROOT / "LICENSE").read_text()
