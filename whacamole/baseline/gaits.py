@@ -24,8 +24,8 @@ _SIDES = ("left", "right")
 _SOLES = {"ankle": 0.07, "foot": 0.02}
 """Joints of the foot and their height [m] over the ground when it stands."""
 
-_SOFTNESS = 0.015  # metres above the lowest point at which a foot counts for 1/e
-_INERTIA = 1.2  # frames, σ of the low-pass of the root's velocity
+_SOFTNESS = 0.015  # metres above the lower end of a foot at which the other end bears 1/e
+_INERTIA = 1.2  # frames, σ of the low-pass of the root's path; bridges the flights of a run
 
 
 def gait_rand(rng: np.random.Generator, body: BodyModel, betas: FloatArray) -> Clip:
@@ -41,11 +41,11 @@ def gait_rand(rng: np.random.Generator, body: BodyModel, betas: FloatArray) -> C
         ("head", 0.15),
     ):
         pose[:, JOINT_INDEX[joint] - 1] = wave(spread)
-    _legs_rand(rng, pose, wave)
+    bearing = _legs_rand(rng, pose, wave)
     _arms_rand(rng, pose, wave)
     params = replace(BodyParams.zeros(frames, betas), body_pose=pose, global_orient=_root_rand(rng, wave))
     joints = body.pose_joints(params)
-    moved = replace(params, transl=_path(joints))
+    moved = replace(params, transl=_path(joints, bearing))
     return clip_of(moved, body, "")
 
 
@@ -61,8 +61,13 @@ def _waves(rng: np.random.Generator, frames: int) -> Callable[[float], FloatArra
     return wave
 
 
-def _legs_rand(rng: np.random.Generator, pose: FloatArray, wave: Callable[[float], FloatArray]) -> None:
-    """Steps in a random direction, both legs in turn (or together: hops), over legs that wander."""
+def _legs_rand(rng: np.random.Generator, pose: FloatArray, wave: Callable[[float], FloatArray]) -> FloatArray:
+    """Steps in a random direction, both legs in turn (or together: hops), over legs that wander.
+
+    Returns:
+        How much each leg bears (frames, 2), from 0 to 1: it does while it swings back. Both may at once, as
+        in walking, or none, as in running.
+    """
     rate = np.exp(rng.uniform(np.log(0.5), np.log(1.7)))
     phase = 2.0 * np.pi * np.cumsum(rate * (1.0 + wave(0.15)[:, 0])) / FPS + rng.uniform(0.0, 2.0 * np.pi)
     apart = 0.0 if rng.random() < 0.1 else np.pi * (1.0 + 0.05 * rng.normal())
@@ -70,6 +75,8 @@ def _legs_rand(rng: np.random.Generator, pose: FloatArray, wave: Callable[[float
     swing = rng.uniform(0.05, 0.75) * np.clip(1.0 + wave(0.3)[:, 0], 0.0, None)
     bent, lift = rng.uniform(0.0, 0.5), rng.uniform(0.5, 1.3)
     loose = np.exp(rng.uniform(np.log(0.01), np.log(0.25)))
+    sharp, short = rng.uniform(4.0, 12.0), rng.uniform(-0.3, 0.5)
+    bearing = []
     for side, lag in zip(_SIDES, (0.0, apart), strict=True):
         forward, rising = np.sin(phase + lag), np.maximum(np.cos(phase + lag), 0.0)
         hip, knee, ankle = (JOINT_INDEX[f"{side}_{name}"] - 1 for name in ("hip", "knee", "ankle"))
@@ -82,6 +89,8 @@ def _legs_rand(rng: np.random.Generator, pose: FloatArray, wave: Callable[[float
         pose[:, knee, 0] = bent + raised + np.abs(wave(loose)[:, 0])
         pose[:, ankle, 0] = -0.5 * bent + 0.3 * swing * rng.uniform(-1.0, 1.0) * forward
         pose[:, ankle] += wave(0.5 * loose)
+        bearing.append(1.0 / (1.0 + np.exp(sharp * (np.cos(phase + lag) + short))))
+    return np.stack(bearing, axis=1)
 
 
 def _arms_rand(rng: np.random.Generator, pose: FloatArray, wave: Callable[[float], FloatArray]) -> None:
@@ -106,16 +115,26 @@ def _root_rand(rng: np.random.Generator, wave: Callable[[float], FloatArray]) ->
     return orient
 
 
-def _path(joints: FloatArray) -> FloatArray:
-    """Root path (frames, 3) [m] on which the lowest points of the feet rest, from joints about a fixed
-    root."""
-    rows = [JOINT_INDEX[f"{side}_{name}"] for name in _SOLES for side in _SIDES]
-    soles = joints[:, rows] - np.array([[0.0, 0.0, height] for height in _SOLES.values() for _ in _SIDES])
-    lowest = soles[..., 2].min(axis=1)
-    weight = np.exp(-(soles[..., 2] - lowest[:, None]) / _SOFTNESS)
-    weight /= weight.sum(axis=1, keepdims=True)
+def _path(joints: FloatArray, bearing: FloatArray) -> FloatArray:
+    """Root path (frames, 3) [m] on which the bearing feet rest, from joints about a fixed root.
+
+    Args:
+        joints: (frames, 55, 3) [m].
+        bearing: (frames, 2) how much each leg bears.
+    """
+    rows = [[JOINT_INDEX[f"{side}_{name}"] for name in _SOLES] for side in _SIDES]
+    soles = joints[:, rows] - np.array([[0.0, 0.0, height] for height in _SOLES.values()])
+    height = soles[..., 2]
+    weight = np.exp((height.min(axis=-1, keepdims=True) - height) / _SOFTNESS)
+    weight *= (bearing + 1e-6)[..., None] / weight.sum(axis=-1, keepdims=True)
+    total = _smooth(weight.sum(axis=(1, 2)))[:, None]
     steps = np.diff(soles, axis=0, prepend=soles[:1])
-    velocity = -(weight[..., None] * steps).sum(axis=1)
-    path = np.cumsum(gaussian_filter1d(velocity, _INERTIA, axis=0), axis=0)
-    path[:, 2] = -gaussian_filter1d(lowest, _INERTIA)
+    velocity = -_smooth((weight[..., None] * steps).sum(axis=(1, 2))) / total
+    path = np.cumsum(velocity, axis=0)
+    path[:, 2] = -_smooth((weight * height).sum(axis=(1, 2))) / total[:, 0]
     return path
+
+
+def _smooth(values: FloatArray) -> FloatArray:
+    smooth: FloatArray = gaussian_filter1d(values, _INERTIA, axis=0)
+    return smooth

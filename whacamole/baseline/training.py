@@ -41,9 +41,9 @@ class TrainingRecipe:
         augmentation: camera and noise.
     """
 
-    steps: int = 3000
+    steps: int = 1500
     batch: int = 64
-    rate: float = 1e-3
+    rate: float = 2e-3
     seed: int = 0
     takes: int = 6
     gaits: int = 120
