@@ -1,5 +1,6 @@
 """The result of an evaluation: the scores of every sequence and method, saved whole and read back."""
 
+import contextlib
 import json
 import os
 import zipfile
@@ -128,11 +129,11 @@ class Result:
                 np.savez_compressed(stream, **arrays)
             part.replace(path)
         except OSError as error:
+            with contextlib.suppress(OSError):
+                part.unlink()
             raise EvaluationError(
                 f"{path}: {error.strerror or error}; choose a place that can be written"
             ) from error
-        finally:
-            part.unlink(missing_ok=True)
         return path
 
     @classmethod
@@ -144,7 +145,7 @@ class Result:
         """
         path = Path(path)
         try:
-            with np.load(path, allow_pickle=False) as archive:
+            with path.open("rb") as stream, np.load(stream, allow_pickle=False) as archive:
                 meta = json.loads(str(archive["meta"]))
                 if meta.get("format") != FORMAT:
                     raise EvaluationError(
@@ -153,7 +154,7 @@ class Result:
                 methods = tuple(
                     _restore(text, number, archive) for number, text in enumerate(meta["methods"])
                 )
-        except (OSError, ValueError, KeyError, TypeError, zipfile.BadZipFile) as error:
+        except (OSError, EOFError, ValueError, KeyError, TypeError, zipfile.BadZipFile) as error:
             raise EvaluationError(f"{path}: no saved result ({error}); write one with --save") from error
         return cls(
             protocol=Protocol.from_dict(meta["protocol"]),

@@ -45,7 +45,8 @@ class Scorer:
         """
         row_of_truth, frame_of_prediction = _common_frames(truth, prediction)
         score = _empty(truth, prediction)
-        people = [self._figure(truth, i) for i in range(len(truth.people))]
+        posed = bool(prediction.people)  # a camera alone needs nobody's body
+        people = [self._figure(truth, i, posed=posed) for i in range(len(truth.people))]
         tracks = [self._figure(prediction, i, predicted=True) for i in range(len(prediction.people))]
         matches = match_tracks(people, tracks, frame_of_prediction)
         timeline = Timeline.of(truth.frame_index, truth.fps, self.protocol)
@@ -63,12 +64,12 @@ class Scorer:
         _count(people, tracks, matches, pairs, score)
         return score
 
-    def _figure(self, recording: Recording, i: int, *, predicted: bool = False) -> Figure:
+    def _figure(self, recording: Recording, i: int, *, predicted: bool = False, posed: bool = True) -> Figure:
         person = recording.people[i]
         stored = {space: joints[i] for space, joints in recording.joints.items()}
         return Figure(
             person,
-            self._body(person, required=not stored),
+            self._body(person, required=posed and not stored),
             recording.camera,
             stored,
             mean_betas=predicted and self.protocol.betas == "mean",

@@ -131,7 +131,7 @@ def _read(path: Path) -> dict[str, Any]:
             raise EvaluationError(f"{path}: holds no model; give an SMPL or SMPL-H model file")
         return value
     try:
-        with np.load(path, allow_pickle=False) as archive:
+        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as archive:
             return {key: archive[key] for key in archive.files if _plain(archive, key)}
     except (OSError, ValueError) as error:
         raise EvaluationError(f"{path}: not readable ({error}); fetch the model file again") from error

@@ -20,7 +20,7 @@ def read_npz(path: Path) -> dict[str, Any]:
         EvaluationError: the file is missing, damaged or holds Python objects.
     """
     try:
-        with np.load(path, allow_pickle=False) as archive:
+        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as archive:
             if not hasattr(archive, "files"):
                 raise EvaluationError(f"{path}: one array, not an .npz archive; save it with numpy.savez")
             return {key: archive[key] for key in archive.files}
