@@ -1,7 +1,8 @@
 """What stands around the people: the ground, boxes in the way, and the walls of a room."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -29,36 +30,62 @@ class Obstacle:
     yaw: float = 0.0
     name: str = "obstacle"
 
-    def to_local(self, points: ArrayLike) -> Array:
-        """Points (…, 3) of the world in the axes of the box, from its centre."""
-        p = np.asarray(points, float) - np.asarray(self.center)
-        cos, sin = np.cos(self.yaw), np.sin(self.yaw)
-        return np.stack(
-            [cos * p[..., 0] + sin * p[..., 1], cos * p[..., 1] - sin * p[..., 0], p[..., 2]], axis=-1
-        )
-
     def distance(self, points: ArrayLike) -> Array:
         """Signed distance (…) [m] of points (…, 3) from the surface, negative inside."""
-        gap = np.abs(self.to_local(points)) - 0.5 * np.asarray(self.size)
+        return Boxes.of([self]).distance(points)[..., 0]
+
+    def hides(self, eye: ArrayLike, target: ArrayLike) -> Array:
+        """Whether the box cuts the straight line from `eye` to `target`, (…) bool for points (…, 3)."""
+        return Boxes.of([self]).cut(eye, target)[..., 0]
+
+
+@dataclass(frozen=True)
+class Boxes:
+    """Obstacles as arrays, so that all of them are asked at once.
+
+    Attributes:
+        center: centres (O, 3) [m].
+        half: half side lengths (O, 3) [m].
+        cos, sin: of the turn about z (O,).
+    """
+
+    center: Array
+    half: Array
+    cos: Array
+    sin: Array
+
+    @classmethod
+    def of(cls, obstacles: Sequence[Obstacle]) -> "Boxes":
+        """The arrays of `obstacles`."""
+        yaw = np.array([obstacle.yaw for obstacle in obstacles])
+        center = np.array([obstacle.center for obstacle in obstacles], float).reshape(-1, 3)
+        size = np.array([obstacle.size for obstacle in obstacles], float).reshape(-1, 3)
+        return cls(center, 0.5 * size, np.cos(yaw), np.sin(yaw))
+
+    def to_local(self, points: ArrayLike) -> Array:
+        """Points (…, 3) of the world in the axes of each box, from its centre (…, O, 3)."""
+        p = np.asarray(points, float)[..., None, :] - self.center
+        x = self.cos * p[..., 0] + self.sin * p[..., 1]
+        y = self.cos * p[..., 1] - self.sin * p[..., 0]
+        return np.stack([x, y, p[..., 2]], axis=-1)
+
+    def distance(self, points: ArrayLike) -> Array:
+        """Signed distance (…, O) [m] of points (…, 3) from each surface, negative inside."""
+        gap = np.abs(self.to_local(points)) - self.half
         outside: Array = np.linalg.norm(np.maximum(gap, 0.0), axis=-1)
         inside: Array = np.minimum(gap.max(axis=-1), 0.0)
         return outside + inside
 
-    def hides(self, eye: ArrayLike, target: ArrayLike) -> Array:
-        """Whether the box cuts the straight line from `eye` to `target`, (…) bool for points (…, 3)."""
+    def cut(self, eye: ArrayLike, target: ArrayLike) -> Array:
+        """Whether each box cuts the lines from `eye` to `target` (…, 3): the slab test, (…, O) bool."""
         start, end = self.to_local(eye), self.to_local(target)
-        return segment_cuts_box(start, end, -0.5 * np.asarray(self.size), 0.5 * np.asarray(self.size))
-
-
-def segment_cuts_box(start: Array, end: Array, box_min: Array, box_max: Array) -> Array:
-    """Whether segments (…, 3) pass through axis-aligned boxes (…, 3): the slab test, (…) bool."""
-    step = end - start
-    step = np.where(np.abs(step) < 1e-12, 1e-12, step)
-    one, other = (box_min - start) / step, (box_max - start) / step
-    enter = np.minimum(one, other).max(axis=-1)
-    leave = np.maximum(one, other).min(axis=-1)
-    cuts: Array = (enter <= leave) & (leave >= 0.0) & (enter <= 1.0)
-    return cuts
+        step = end - start
+        step = np.where(np.abs(step) < 1e-12, 1e-12, step)
+        one, other = (-self.half - start) / step, (self.half - start) / step
+        enter = np.minimum(one, other).max(axis=-1)
+        leave = np.maximum(one, other).min(axis=-1)
+        cuts: Array = (enter <= leave) & (leave >= 0.0) & (enter <= 1.0)
+        return cuts
 
 
 @dataclass(frozen=True)
@@ -92,20 +119,18 @@ class World:
         gap: Array = np.minimum(sideways, high[2] - points[..., 2])
         return gap
 
+    @cached_property
+    def _boxes(self) -> Boxes:
+        return Boxes.of(self.obstacles)
+
     def obstacle_distance(self, points: ArrayLike) -> Array:
         """Signed distance (…) [m] of points (…, 3) from the nearest obstacle; infinite without any."""
-        points = np.asarray(points, float)
-        nearest = np.full(points.shape[:-1], np.inf)
-        for obstacle in self.obstacles:
-            nearest = np.minimum(nearest, obstacle.distance(points))
+        nearest: Array = self._boxes.distance(points).min(axis=-1, initial=np.inf)
         return nearest
 
     def hides(self, eye: ArrayLike, target: ArrayLike) -> Array:
         """Whether any obstacle cuts the line from `eye` to `target`, (…) bool for points (…, 3)."""
-        eye, target = np.broadcast_arrays(np.asarray(eye, float), np.asarray(target, float))
-        hidden = np.zeros(eye.shape[:-1], dtype=bool)
-        for obstacle in self.obstacles:
-            hidden |= obstacle.hides(eye, target)
+        hidden: Array = self._boxes.cut(eye, target).any(axis=-1)
         return hidden
 
     def to_json(self) -> dict[str, Any]:
