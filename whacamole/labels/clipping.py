@@ -111,7 +111,5 @@ def _keep_seen(triangles: ScreenTriangles, size: tuple[int, int], *, cull_back: 
         # y points down, so a triangle that is counter-clockwise from outside turns the other way on screen.
         (x0, x1, x2), (y0, y1, y2) = triangles.x, triangles.y
         keep &= (x1 - x0) * (y2 - y0) - (y1 - y0) * (x2 - x0) < 0
-    chosen = np.flatnonzero(keep)
-    return ScreenTriangles(
-        *(getattr(triangles, f.name).take(chosen, axis=-1) for f in fields(ScreenTriangles))
-    )
+    seen = np.flatnonzero(keep)
+    return ScreenTriangles(*(getattr(triangles, f.name).take(seen, axis=-1) for f in fields(ScreenTriangles)))

@@ -63,10 +63,8 @@ class SkinSearch:
         flag[among] = True
         a, b, c = skin.map.corner
         triangles = np.flatnonzero(flag[a] | flag[b] | flag[c])
-        corners, sides = (
-            skin.map.corner.take(triangles, axis=1),
-            skin.map.triangle_edge.take(triangles, axis=1),
-        )
+        corners = skin.map.corner.take(triangles, axis=1)
+        sides = skin.map.triangle_edge.take(triangles, axis=1)
         longest = np.maximum.reduce(skin.edge_lengths(sides))
         slack = np.full(count + skin.map.edge.shape[1], -1.0)
         for column in (*corners, *(count + sides)):

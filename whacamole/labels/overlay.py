@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
 from whacamole.body import PARENTS, BodyModel, BodyParams
-from whacamole.labels.arrays import AnyArray, Float64s, Floats, Integers
+from whacamole.labels.arrays import AnyArray, Floats, Integers
 from whacamole.labels.raster import RasterMesh
 from whacamole.labels.shading import shade, track_colour
 from whacamole.labels.visibility import OUTSIDE, VISIBLE
@@ -97,7 +97,8 @@ def _blend_bodies(
     """Bodies over the image, smooth at the edges: drawn twice as large and averaged down."""
     height, width = image.shape[:2]
     size = _SUPERSAMPLE
-    fine: Float64s = np.diag((float(size), float(size), 1.0)) @ K
+    fine = np.array(K, dtype=np.float64)
+    fine[:2] *= size
     meshes = [RasterMesh(body, faces, cull_back=True) for body in vertices]
     shaded = shade(meshes, [track_colour(i) for i in ids], fine, width * size, height * size)
     alpha = np.where(shaded.mesh >= 0, style.mesh, 0.0)

@@ -7,12 +7,11 @@ points against samples (lower and upper bounds of the distance), points against 
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.sparse
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial.distance import cdist
 
 from whacamole.labels.arrays import Bools, Float64s, Indices
 from whacamole.labels.closest import SkinSearch
+from whacamole.labels.flood import flood
 from whacamole.labels.patches import PosedSkin, SkinMap
 
 EXACT_WITHIN = 0.05
@@ -134,83 +133,57 @@ def _near_patches(a: PosedSkin, b: PosedSkin, apart: Float64s, need: Float64s) -
 def _one_way(a: PosedSkin, b: PosedSkin, apart: Float64s, gap: Float64s, threshold: float) -> _Side:
     """Exact signed distances of all points of A that touch B, lie in B, or decide the gap of their part."""
     skin_map = a.map
-    exact = np.minimum(np.append(gap, np.inf), EXACT_WITHIN)
-    need = np.maximum(exact, threshold)
+    need = np.maximum(np.minimum(np.append(gap, np.inf), EXACT_WITHIN), threshold)
     near = _near_patches(a, b, apart, need[skin_map.coarse.part])
     if not len(near.mine):
-        return _Side(near.mine, near.clear, near.mine, gap)
+        return _far_or_enclosed(a, b, gap)
     points = skin_map.fine.points(near.mine)
     search = SkinSearch(b, skin_map.fine.points(near.theirs))
-    within = max(float(need.max()), _LONG_EDGE)
-    lower, upper = search.bounds(a.points[points], within)
+    lower, upper = search.bounds(a.points[points], max(float(need.max()), _LONG_EDGE))
     clear = np.zeros(len(skin_map.fine.centre))
     clear[near.mine] = near.clear
-    lower = np.minimum(lower, clear[skin_map.fine.patch[points]])
-    free, deep = _outside(a, b, points, lower, near.mine)
+    clear = clear[skin_map.fine.patch[points]]
+    sides = flood(a, b, points, np.minimum(lower, clear), near.mine)
     part = skin_map.part[points]
     best = np.append(gap, -np.inf)
-    np.minimum.at(best, part[free & (part >= 0)], upper[free & (part >= 0)])
-    ask = ~free | (lower <= np.maximum(np.minimum(best[part], EXACT_WITHIN), threshold))
+    counted = sides.free & (part >= 0)
+    np.minimum.at(best, part[counted], upper[counted])
+    ask = np.flatnonzero(~sides.free | (lower <= np.maximum(np.minimum(best[part], EXACT_WITHIN), threshold)))
     found = search.closest(a.points[points[ask]], float(upper[ask].max(initial=0.0)))
-    side = _Side(points[ask], found.distance, found.corner, gap)
-    return _with_enclosed(side, a, b, deep) if len(deep) else side
+    # Where the patches of B left out may be nearer than what was found, all of B must be searched.
+    again = np.flatnonzero(~sides.free[ask] & (np.abs(found.distance) > clear[ask]))
+    chosen = np.concatenate([points[ask], sides.deep])
+    distance = np.append(found.distance, np.zeros(len(sides.deep)))
+    corner = np.append(found.corner, np.zeros(len(sides.deep), dtype=np.intp))
+    open_ = np.append(again, np.arange(len(ask), len(chosen)))
+    if len(open_):
+        more = _whole(b).closest(a.points[chosen[open_]])
+        distance[open_], corner[open_] = more.distance, more.corner
+    group = np.append(np.where(sides.free[ask], -1, sides.group[ask]), sides.deep_group)
+    return _Side(chosen, _agree(distance, group), corner, gap)
 
 
-def _outside(
-    a: PosedSkin, b: PosedSkin, points: Indices, lower: Float64s, mine: Indices
-) -> tuple[Bools, Indices]:
-    """Which points of A are surely outside B: tied to a point outside B's box by edges too short to reach B.
+def _agree(distance: Float64s, group: Indices) -> Float64s:
+    """Signed distances with one sign a group; group -1 is outside.
 
-    The ball round a patch that is not among ``mine`` holds the patch and all edges from it and does not touch
-    B, so all its edges tie. An edge between two of ``points`` ties if it is shorter than one end's distance
-    to B.
-
-    Args:
-        a: whose points.
-        b: inside or outside whom.
-        points: the points of the fine patches ``mine``.
-        lower: their distance to B, at least.
-        mine: fine patches.
-
-    Returns:
-        A flag for each of ``points``, and all points of other patches that may be inside B.
+    Where B's skin crosses itself, a point inside may be nearest to a sheet that lies inside too, and the sign
+    by normals then says outside. It never errs the other way: behind any sheet is inside.
     """
-    fine, count = a.map.fine, len(points)
-    # Nodes: each of ``points``, then every fine patch; those of ``mine`` stay alone.
-    node = count + fine.patch
-    node[points] = np.arange(count)
-    near = np.zeros(len(node), dtype=np.bool_)
-    near[points] = True
-    start, end = a.map.edge
-    touched = np.flatnonzero(near[start] | near[end])
-    start, end = node[start[touched]], node[end[touched]]
-    clear = np.full(count + len(fine.centre), np.inf)
-    clear[:count] = lower
-    ties = a.edge_lengths(touched) < np.maximum(clear[start], clear[end])
-    left_out = np.ones(len(fine.centre), dtype=np.bool_)
-    left_out[mine] = False
-    links = fine.links[:, left_out[fine.links[0]] & left_out[fine.links[1]]] + count
-    i, j = np.concatenate([start[ties], links[0]]), np.concatenate([end[ties], links[1]])
-    graph = scipy.sparse.coo_array((np.ones(len(i), dtype=np.int8), (i, j)), shape=(len(clear), len(clear)))
-    _, label = connected_components(graph, directed=False)
-    places = np.concatenate([a.points[points], a.points[fine.centre]])
-    beyond = ((places < b.low) | (places > b.high)).any(axis=1)
-    beyond[count + mine] = False
-    anchored = np.zeros(len(clear), dtype=np.bool_)
-    anchored[label[beyond]] = True
-    free = anchored[label]
-    return free[:count], fine.points(np.flatnonzero(left_out & ~free[count:]))
+    inside = np.isin(group, np.unique(group[(distance < 0) & (group >= 0)]))
+    return np.where(inside, -np.abs(distance), np.abs(distance))
 
 
-def _with_enclosed(side: _Side, a: PosedSkin, b: PosedSkin, points: Indices) -> _Side:
-    """Add points far from B's skin that nothing ties to the outside: mostly the inside of a deep overlap."""
-    found = SkinSearch(b, np.arange(len(b.points))).closest(a.points[points])
-    return _Side(
-        np.concatenate([side.near, points]),
-        np.concatenate([side.distance, found.distance]),
-        np.concatenate([side.corner, found.corner]),
-        side.gap,
-    )
+def _far_or_enclosed(a: PosedSkin, b: PosedSkin, gap: Float64s) -> _Side:
+    """A skin with no patch near B's is outside, unless B is so much larger that it holds all of A."""
+    none = np.zeros(0, dtype=np.intp)
+    if (a.low < b.low).any() or (a.high > b.high).any():
+        return _Side(none, np.zeros(0), none, gap)
+    found = _whole(b).closest(a.points)
+    return _Side(np.arange(len(a.points)), found.distance, found.corner, gap)
+
+
+def _whole(skin: PosedSkin) -> SkinSearch:
+    return SkinSearch(skin, np.arange(len(skin.points)))
 
 
 def _join(own: _Side, other: _Side, skin_map: SkinMap, threshold: float) -> Touch:

@@ -1,0 +1,75 @@
+"""Which points of one skin are inside another, by following edges that do not cross it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse
+from scipy.sparse.csgraph import connected_components
+
+from whacamole.labels.arrays import Bools, Float64s, Indices
+from whacamole.labels.patches import PosedSkin
+
+
+@dataclass(frozen=True, eq=False)
+class Flood:
+    """Points of A in groups that lie on one side of B's skin.
+
+    Attributes:
+        free: for each of the points asked about, whether it is surely outside B.
+        group: for each of them, which others share its side.
+        deep: other points that may be inside B, far from its skin.
+        deep_group: their groups.
+    """
+
+    free: Bools
+    group: Indices
+    deep: Indices
+    deep_group: Indices
+
+
+def flood(a: PosedSkin, b: PosedSkin, points: Indices, lower: Float64s, mine: Indices) -> Flood:
+    """Tie points of A by edges too short to reach B, and free those tied to a point outside B's box.
+
+    The ball round a patch that is not among ``mine`` holds the patch and all edges from it and does not touch
+    B, so all its edges tie. An edge between two of ``points`` ties if it is shorter than one end's distance
+    to B: the ball of that radius round that end does not touch B either.
+
+    Args:
+        a: whose points.
+        b: inside or outside whom.
+        points: the points of the fine patches ``mine``.
+        lower: their distance to B, at least [m].
+        mine: fine patches.
+    """
+    fine, count = a.map.fine, len(points)
+    # Nodes: each of ``points``, then every fine patch; those of ``mine`` stay alone.
+    node = count + fine.patch
+    node[points] = np.arange(count)
+    near = np.zeros(len(node), dtype=np.bool_)
+    near[points] = True
+    start, end = a.map.edge
+    touched = np.flatnonzero(near[start] | near[end])
+    start, end = node[start[touched]], node[end[touched]]
+    clear = np.full(count + len(fine.centre), np.inf)
+    clear[:count] = lower
+    ties = a.edge_lengths(touched) < np.maximum(clear[start], clear[end])
+    left_out = np.ones(len(fine.centre), dtype=np.bool_)
+    left_out[mine] = False
+    links = fine.links[:, left_out[fine.links[0]] & left_out[fine.links[1]]] + count
+    group = _connect(np.append(start[ties], links[0]), np.append(end[ties], links[1]), len(clear))
+    places = np.concatenate([a.points[points], a.points[fine.centre]])
+    beyond = ((places < b.low) | (places > b.high)).any(axis=1)
+    beyond[count + mine] = False
+    anchored = np.zeros(len(clear), dtype=np.bool_)
+    anchored[group[beyond]] = True
+    free = anchored[group]
+    deep = fine.points(np.flatnonzero(left_out & ~free[count:]))
+    return Flood(free[:count], group[:count], deep, group[count + fine.patch[deep]])
+
+
+def _connect(start: Indices, end: Indices, count: int) -> Indices:
+    """Connected components of ``count`` nodes: one label a node."""
+    ones = np.ones(len(start), dtype=np.int8)
+    graph = scipy.sparse.coo_array((ones, (start, end)), shape=(count, count))
+    _, label = connected_components(graph, directed=False)
+    return label.astype(np.intp)
