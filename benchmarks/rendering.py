@@ -1,9 +1,9 @@
 """Image error over seconds: what each render setting buys, on two scenes of the product's own.
 
-``python benchmarks/rendering.py --settings presets denoiser`` prints a table in Markdown. Error is the root mean
-square over pixels and channels of the difference, in 8-bit levels, to a reference of many samples and bounces;
-cost is CPU seconds (all threads) of a frame that is not the first, labels included. The reference is kept in
-``--out`` and used again. Two cores take some minutes for the reference and half a minute for every setting.
+``python benchmarks/rendering.py --settings presets denoiser`` prints a table in Markdown. Error is the root
+mean square over pixels and channels of the difference, in 8-bit levels, to a reference of many samples and
+bounces; cost is CPU seconds (all threads) of a frame that is not the first, labels included. The reference is
+kept in ``--out`` and used again. Two cores take some minutes for the reference and half a minute a setting.
 """
 
 from __future__ import annotations

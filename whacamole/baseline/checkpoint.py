@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import torch
+from numpy.typing import NDArray
 
 from whacamole.baseline.network import VelocimeterNetwork
 from whacamole.baseline.testing import Errors
@@ -72,24 +73,38 @@ def read_checkpoint(
     Raises:
         BaselineError: it is damaged, or of another recipe or other motions.
     """
-    from safetensors import SafetensorError, safe_open
-
     if not path.exists():
         return Checkpoint()
-    try:
-        with safe_open(str(path), framework="numpy") as stored:
-            about = stored.metadata() or {}
-            arrays = {name: stored.get_tensor(name) for name in stored.keys()}  # noqa: SIM118 - not a mapping
-        state = json.loads(about["state"])
-    except (OSError, SafetensorError, KeyError, ValueError) as error:
-        raise BaselineError(f"{path}: not a checkpoint ({error}); remove it to begin anew") from error
+    arrays, about, state = _read(path)
     if about.get("identity") != identity:
         raise BaselineError(f"{path}: of another recipe or other motions; choose another --out or remove it")
     network.load_arrays({name: arrays[f"network.{name}"] for name in network.state_dict()})
     for name, parameter in network.named_parameters():
         optimizer.state[parameter] = {
-            "step": torch.tensor(float(state["step"])),
+            "step": torch.tensor(float(state.step)),
             **{moment: torch.from_numpy(np.array(arrays[f"{moment}.{name}"])) for moment in _MOMENTS},
         }
-    curve = tuple((step, loss, errors and Errors(**errors)) for step, loss, errors in state["curve"])
-    return Checkpoint(int(state["step"]), float(state["loss"]), curve)
+    return state
+
+
+def read_curve(path: Path) -> Checkpoint:
+    """How far a training is, without its parameters.
+
+    Raises:
+        BaselineError: it is damaged.
+    """
+    return _read(path)[2]
+
+
+def _read(path: Path) -> tuple[dict[str, NDArray[np.float32]], dict[str, str], Checkpoint]:
+    from safetensors import SafetensorError, safe_open
+
+    try:
+        with safe_open(str(path), framework="numpy") as stored:
+            about = stored.metadata() or {}
+            arrays = {name: stored.get_tensor(name) for name in stored.keys()}  # noqa: SIM118 - not a mapping
+        state = json.loads(about["state"])
+        curve = tuple((step, loss, errors and Errors(**errors)) for step, loss, errors in state["curve"])
+        return arrays, about, Checkpoint(int(state["step"]), float(state["loss"]), curve)
+    except (OSError, SafetensorError, KeyError, TypeError, ValueError) as error:
+        raise BaselineError(f"{path}: not a checkpoint ({error}); remove it to begin anew") from error

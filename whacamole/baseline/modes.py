@@ -65,3 +65,15 @@ def mode_named(name: str) -> Mode:
         return MODES[name]
     except KeyError:
         raise BaselineError(f"no mode {name!r}, only {', '.join(MODES)}") from None
+
+
+def components_named(name: str) -> Components:
+    """Components by name.
+
+    Raises:
+        BaselineError: there are none of this name.
+    """
+    for known in COMPONENTS:
+        if known == name:
+            return known
+    raise BaselineError(f"components {name!r}: expected {', '.join(COMPONENTS)}")

@@ -10,15 +10,17 @@ from whacamole.body import BodyModel
 
 
 class EstimatorSource(Protocol):
-    """A way to camera-frame people.
+    """A way to camera-frame people."""
 
-    Attributes:
-        name: as typed.
-        ground_truth: what true data it uses, besides K.
-    """
+    @property
+    def name(self) -> str:
+        """As typed."""
+        ...
 
-    name: str
-    ground_truth: tuple[str, ...]
+    @property
+    def ground_truth(self) -> tuple[str, ...]:
+        """What true data it uses, besides K."""
+        ...
 
     def estimate(self, footage: Footage, K: FloatArray, body: BodyModel) -> Sequence[PersonEstimate]:
         """Everybody found in the footage.

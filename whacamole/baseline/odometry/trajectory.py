@@ -97,7 +97,10 @@ class Scene:
 class OdometrySource(Protocol):
     """A way to the camera's trajectory."""
 
-    name: str
+    @property
+    def name(self) -> str:
+        """As typed."""
+        ...
 
     def track(self, scene: Scene) -> Odometry:
         """The camera's trajectory through the footage.
