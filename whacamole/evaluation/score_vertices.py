@@ -14,8 +14,8 @@ from whacamole.evaluation.pairing import Pair
 from whacamole.evaluation.protocol import Protocol
 from whacamole.evaluation.records import IntArray
 
-BLOCK = 32
-"""Frames whose vertices are held at once: bounds the memory whatever the length of a sequence."""
+BLOCK = 450_000
+"""Vertices of a body held at once (frames × V): bounds the memory, and stays near the processor's caches."""
 
 _PART_WEIGHT = 0.5
 
@@ -67,8 +67,9 @@ def score_vertices(pair: Pair, protocol: Protocol, options: VertexOptions) -> Ve
     wants_regressed = protocol.joints == "h36m14"
     regressed = np.zeros((2, F, len(H36M14), 3)) if wants_regressed else None
     parts = _parts(bodies[1])
-    for start in range(0, F, BLOCK):
-        at = np.arange(start, min(start + BLOCK, F))
+    frames = max(1, BLOCK // max(len(body.weights) for body in bodies))
+    for start in range(0, F, frames):
+        at = np.arange(start, min(start + frames, F))
         raw = (
             pair.prediction.local_vertices(pair.at_prediction[at]),
             pair.truth.local_vertices(pair.at_truth[at]),
