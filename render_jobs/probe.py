@@ -15,7 +15,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from render_jobs.errors import EngineError, RenderJobError
 from render_jobs.processes import child_environment, die_with_parent
+from render_jobs.protocol import ENGINES
 
 PROBE_TIMEOUT_S = 120.0
 
@@ -100,6 +102,30 @@ def probe_all() -> list[Probe]:
     return [probe(name) for name in TRIES]
 
 
+def choose_engine(wanted: str = "auto") -> tuple[str, str]:
+    """Settle which engine renders; asks the machine where the answer is not given.
+
+    Args:
+        wanted: an engine's name, or ``auto``: Cycles where it runs, else the raster engine.
+
+    Returns:
+        the engine's name, and a line for the user where it is not the best there is, else an empty one.
+
+    Raises:
+        EngineError: nothing can render here, or not what was asked for; the message holds the remedies.
+    """
+    if wanted not in ("auto", *ENGINES):
+        raise RenderJobError(f"engine {wanted!r} is not one of auto, {', '.join(ENGINES)}")
+    failures: list[str] = []
+    for name in ENGINES if wanted == "auto" else (wanted,):
+        found = probe(name)
+        if found.works:
+            note = f"Rendering with the {name} engine, as {failures[0]}" if failures else ""
+            return name, note
+        failures.append(f"{name} cannot run ({found.found}): {found.remedy}")
+    raise EngineError("; ".join(failures))
+
+
 def _try_cycles() -> str:
     bpy: Any = importlib.import_module("bpy")
     bpy.ops.wm.read_factory_settings(use_empty=True)
@@ -120,9 +146,14 @@ def _try_workbench() -> str:
     return f"Blender's OpenGL engines, on {gpu.platform.renderer_get()}"
 
 
+def _try_raster() -> str:
+    return str(importlib.import_module("render_jobs.raster.context").open_context())
+
+
 TRIES: dict[str, Callable[[], str]] = {
     "cycles": _try_cycles,
     "workbench": _try_workbench,
+    "raster": _try_raster,
 }
 """What can be tried: each returns what it found, or raises, or takes the process with it."""
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from render_jobs.probe import TRIES, explain_failure, probe
+from render_jobs import EngineError, RenderJobError
+from render_jobs.probe import TRIES, Probe, choose_engine, explain_failure, probe
 
 FAILURES = [
     ("ImportError: libX11.so.6: cannot open shared object file: No such file or directory", "libx11-6"),
@@ -59,3 +60,31 @@ def test_a_try_that_gives_no_answer_has_failed() -> None:
     result = probe("cycles", timeout=0.001)
     assert not result.works
     assert "no answer in 0 s" in result.found
+
+
+def _pretend(monkeypatch: pytest.MonkeyPatch, **works: bool) -> None:
+    def answer(name: str, timeout: float = 0.0) -> Probe:
+        return Probe(
+            name, works[name], "it is" if works[name] else "no driver", "" if works[name] else "buy one"
+        )
+
+    monkeypatch.setattr("render_jobs.probe.probe", answer)
+
+
+def test_the_best_engine_that_works_is_taken_and_a_lesser_one_is_announced(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    _pretend(monkeypatch, cycles=True, raster=True)
+    assert choose_engine() == ("cycles", "")
+    assert choose_engine("raster") == ("raster", "")
+    _pretend(monkeypatch, cycles=False, raster=True)
+    name, note = choose_engine()
+    assert name == "raster"
+    assert "cycles cannot run (no driver): buy one" in note
+    with pytest.raises(EngineError, match="cycles cannot run"):
+        choose_engine("cycles")
+    _pretend(monkeypatch, cycles=False, raster=False)
+    with pytest.raises(EngineError, match=r"cycles cannot run.*; raster cannot run"):
+        choose_engine()
+    with pytest.raises(RenderJobError, match="'unreal' is not one of auto, cycles, raster"):
+        choose_engine("unreal")

@@ -1,4 +1,4 @@
-"""The labels of Cycles against rays cast at the job's own triangles, pixel by pixel."""
+"""The labels of both engines against rays cast at the job's own triangles, pixel by pixel."""
 
 from __future__ import annotations
 
@@ -24,16 +24,21 @@ from render_truth import (
     rendered_frame,
 )
 
-pytestmark = pytest.mark.blender
-
 ALL = tuple(PASSES)
 FAST = Quality(name="test", samples=2, denoise="off")
 FRAMES = 3
 
+ENGINES = [
+    pytest.param("cycles", marks=pytest.mark.blender),
+    pytest.param("raster", marks=pytest.mark.gl),
+]
 
-def render(job: RenderJob, folder: Path) -> Path:
+Rendered = tuple[Path, RenderJob]
+
+
+def render(job: RenderJob, folder: Path, engine: str) -> Path:
     job.save(folder)
-    run_job(folder, device="cpu", threads=2, timeout=120)
+    run_job(folder, engine=engine, device="cpu", threads=2, timeout=300)
     return folder
 
 
@@ -46,8 +51,8 @@ def upright(half: float, at: Sequence[float]) -> NDArray[np.float64]:
     return np.array([[-half, 0, -half], [half, 0, -half], [half, 0, half], [-half, 0, half]]) + np.asarray(at)
 
 
-@pytest.fixture(scope="module")
-def everything_moves(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, RenderJob]:
+@pytest.fixture(scope="module", params=ENGINES)
+def everything_moves(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Rendered:
     """A moving box; a camera that travels, turns, zooms and shifts its lens; oblong pixels; neighbours."""
     time = np.arange(-1, FRAMES + 1)[:, None]
     whole = camera(
@@ -65,11 +70,11 @@ def everything_moves(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Re
         camera=part[0], camera_neighbours=part[1], meshes=(box, ground()), passes=ALL, quality=FAST,
         lights=(Sun(), Lamp(position=(2.0, -2.0, 3.0))), environment=Environment(kind="sky"),
     )  # fmt: skip
-    return render(job, tmp_path_factory.mktemp("moves") / "job"), job
+    return render(job, tmp_path_factory.mktemp("moves") / "job", request.param), job
 
 
-@pytest.fixture(scope="module")
-def still_camera(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, RenderJob]:
+@pytest.fixture(scope="module", params=ENGINES)
+def still_camera(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Rendered:
     """A level camera that looks along +y; before it a square that moves to the right and one that rises."""
     sideways = Mesh(
         "sideways", moving(upright(0.4, [-0.6, 0.0, 1.0]), [0.1, 0, 0], FRAMES), SQUARE_FACES, track_id=300
@@ -79,13 +84,11 @@ def still_camera(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Render
     )
     path = camera([[0.0, -4.0, 1.0]] * FRAMES, [0.0, 0.0, 1.0], [100.0] * FRAMES, [[48.0, 32.0]] * FRAMES)
     job = RenderJob(path, (sideways, rising), passes=ALL, image_format="png", quality=FAST)
-    return render(job, tmp_path_factory.mktemp("still") / "job"), job
+    return render(job, tmp_path_factory.mktemp("still") / "job", request.param), job
 
 
 @pytest.mark.parametrize("frame", range(FRAMES))
-def test_every_pixel_of_a_scene_in_which_all_moves(
-    everything_moves: tuple[Path, RenderJob], frame: int
-) -> None:
+def test_every_pixel_of_a_scene_in_which_all_moves(everything_moves: Rendered, frame: int) -> None:
     folder, job = everything_moves
     found, expected = rendered_frame(folder, frame), expected_frame(job, frame)
     assert (found.mask == expected.mask).mean() > 0.999  # a ray may graze an edge
@@ -100,7 +103,7 @@ def test_every_pixel_of_a_scene_in_which_all_moves(
     assert np.isposinf(found.depth[same & ~hit]).all()
 
 
-def test_a_motion_to_the_right_and_one_upwards(still_camera: tuple[Path, RenderJob]) -> None:
+def test_a_motion_to_the_right_and_one_upwards(still_camera: Rendered) -> None:
     folder, _ = still_camera
     for index in range(FRAMES):
         found = rendered_frame(folder, index)
@@ -121,7 +124,7 @@ def test_a_motion_to_the_right_and_one_upwards(still_camera: tuple[Path, RenderJ
         assert (found.flow[found.mask == 0] == 0.0).all()
 
 
-def test_the_cache_is_played_without_a_shift_in_time(still_camera: tuple[Path, RenderJob]) -> None:
+def test_the_cache_is_played_without_a_shift_in_time(still_camera: Rendered) -> None:
     folder, _ = still_camera
     for index in range(FRAMES):
         columns = np.flatnonzero((rendered_frame(folder, index).mask == 300).any(axis=0))
@@ -130,7 +133,7 @@ def test_the_cache_is_played_without_a_shift_in_time(still_camera: tuple[Path, R
         assert columns[-1] + 1 == pytest.approx(48 + 25 * (-0.2 + 0.1 * index), abs=1)
 
 
-def test_files_are_what_the_list_of_passes_says(still_camera: tuple[Path, RenderJob]) -> None:
+def test_files_are_what_the_list_of_passes_says(still_camera: Rendered) -> None:
     folder, job = still_camera
     out = folder / "out"
     assert sorted(path.name for path in out.iterdir() if not path.name.startswith(".")) == sorted(ALL)
@@ -149,7 +152,8 @@ def test_files_are_what_the_list_of_passes_says(still_camera: tuple[Path, Render
             assert file.header()["unit"] == PASSES[name].unit
 
 
-def test_cut_alpha_placements_sides_and_mixed_faces(tmp_path: Path) -> None:
+@pytest.mark.parametrize("engine", ENGINES)
+def test_cut_alpha_placements_sides_and_mixed_faces(tmp_path: Path, engine: str) -> None:
     """The labels follow what is seen: cut-out cards, every placement, no back of a one-sided surface."""
     texture = np.full((64, 64, 4), 255, np.uint8)
     texture[:, 32:, 3] = 0  # the right half of the card is cut away
@@ -171,7 +175,7 @@ def test_cut_alpha_placements_sides_and_mixed_faces(tmp_path: Path) -> None:
         passes=("mask", "depth"),
         quality=FAST,
     )  # fmt: skip
-    folder = render(job, tmp_path / "job")
+    folder = render(job, tmp_path / "job", engine)
     mask = read_picture(folder / "out" / "mask" / "000000.png")
     assert set(np.unique(mask)) == {1, 2, 4}, "the one-sided square shows its back and is not seen"
     assert (mask == 1).sum() == pytest.approx(25 * 12.5, abs=20), "half the card"
@@ -184,6 +188,7 @@ def test_cut_alpha_placements_sides_and_mixed_faces(tmp_path: Path) -> None:
     assert not (folder / "out" / "rgb").exists(), "a pass that was not asked for"
 
 
+@pytest.mark.blender
 def test_blur_softens_the_picture_and_leaves_the_labels_sharp(tmp_path: Path) -> None:
     fast = Mesh("fast", moving(upright(0.49, [0.0, 0.0, 1.0]), [0.6, 0, 0], 1), SQUARE_FACES, track_id=5)
     path = camera([[0.0, -4.0, 1.0]], [0.0, 0.0, 1.0], [100.0], [[48.0, 32.0]])
@@ -192,7 +197,7 @@ def test_blur_softens_the_picture_and_leaves_the_labels_sharp(tmp_path: Path) ->
         path, (fast,), passes=ALL, shutter=0.5, image_format="png", environment=white, tone="standard",
         quality=Quality(name="test", samples=64, denoise="off"),
     )  # fmt: skip
-    folder = render(job, tmp_path / "job")
+    folder = render(job, tmp_path / "job", "cycles")
     found, expected = rendered_frame(folder, 0), expected_frame(job, 0)
     np.testing.assert_array_equal(found.mask, expected.mask)
     np.testing.assert_allclose(found.flow[found.mask == 5], expected.flow[found.mask == 5], atol=0.01)
