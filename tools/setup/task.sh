@@ -47,9 +47,9 @@ lint() {
 
 bench() {
   prepare test
-  for script in benchmarks/bench_*.py; do
-    printf '\n== %s\n' "$script"
-    .venv/bin/python "$script"
+  for name in rendering evaluation; do
+    printf '\n== %s\n' "$name"
+    .venv/bin/python -m "benchmarks.$name"
   done
 }
 
@@ -59,11 +59,10 @@ docs() {
 }
 
 assets() {
-  prepare test
-  for script in tools/*/build*.py; do
-    printf '\n== %s\n' "$script"
-    .venv/bin/python "$script"
-  done
+  prepare ""
+  .venv/bin/python -m pip download --quiet --no-deps --dest build/motions pybullet==3.2.7
+  .venv/bin/python -m tools.motions.build build/motions/pybullet-*.whl
+  .venv/bin/python tools/assets/build.py --work build/people --out whacamole/assets
 }
 
 case "${1:-help}" in
