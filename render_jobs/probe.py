@@ -18,23 +18,22 @@ from typing import Any
 from render_jobs.errors import EngineError, RenderJobError
 from render_jobs.processes import child_environment, die_with_parent
 from render_jobs.protocol import ENGINES
+from render_jobs.system_libraries import BLENDER_LIBRARIES, OPENGL_LIBRARIES, install_line
 
 PROBE_TIMEOUT_S = 120.0
 
-INSTALL = "apt-get install --no-install-recommends"
-BLENDER_LIBRARIES = "libx11-6 libxrender1 libxfixes3 libxi6 libxkbcommon0 libsm6 libgl1"
-"""Debian packages without which Blender's module cannot be imported."""
-OPENGL_LIBRARIES = "libegl1 libgl1 libgl1-mesa-dri"
-"""Debian packages for OpenGL without a display or a GPU."""
+FOR_BLENDER = install_line(BLENDER_LIBRARIES)
+FOR_OPENGL = install_line(OPENGL_LIBRARIES)
+FOR_DRIVER = "install the package of the GPU's driver, or of Mesa's (in Debian: libgl1-mesa-dri)"
 
 REMEDIES: tuple[tuple[str, str], ...] = (
     (r"No module named '?(bpy|pyrender|OpenGL)", "pip install --constraint constraints.txt whacamole"),
     (r"numpy\.core\.multiarray failed|np\.infty", 'pip install "numpy>=1.26,<2"'),
-    (r"lib(X\w+|xkb\w+|SM|ICE|GL)\.so[.\d]*: cannot open", f"{INSTALL} {BLENDER_LIBRARIES}"),
-    (r"XRenderFindVisualFormat", f"{INSTALL} libxrender1, or set PYGLET_HEADLESS=1"),
-    (r"Unable to load EGL|Couldn't open libEGL|EGL: cannot open", f"{INSTALL} {OPENGL_LIBRARIES}"),
-    (r"Unable to load OpenGL|glGetError", f"{INSTALL} {OPENGL_LIBRARIES}"),
-    (r"EGL Error \(0x3001\)|err = 12289|eglInitialize", f"{INSTALL} libgl1-mesa-dri, or the GPU's driver"),
+    (r"lib(X\w+|xkb\w+|SM|ICE|GL)\.so[.\d]*: cannot open", FOR_BLENDER),
+    (r"XRenderFindVisualFormat", "set PYGLET_HEADLESS=1, or " + install_line(["libXrender.so.1"])),
+    (r"Unable to load EGL|Couldn't open libEGL|EGL: cannot open", FOR_OPENGL),
+    (r"Unable to load OpenGL|glGetError", FOR_OPENGL),
+    (r"EGL Error \(0x3001\)|err = 12289|eglInitialize", FOR_DRIVER),
     (r'Library "GLU" not found', 'pip install "pyglet>=2"'),
     (r"OSMesaCreateContextAttribs", "pip install --no-deps PyOpenGL==3.1.10"),
     (r"NoSuchDisplay|NullFunctionError", "set PYOPENGL_PLATFORM=egl and PYGLET_HEADLESS=1"),
