@@ -9,13 +9,14 @@ import typer
 from whacamole.cli.body import body
 from whacamole.cli.doctor import doctor
 from whacamole.cli.evaluate import evaluate
+from whacamole.cli.plan import plan
 from whacamole.cli.recipe import recipe
 from whacamole.cli.render import render
 from whacamole.cli.status import status
 
 __all__ = ["app", "main"]
 
-COMMANDS: tuple[Callable[..., Any], ...] = (render, status, evaluate, body, recipe, doctor)
+COMMANDS: tuple[Callable[..., Any], ...] = (render, plan, status, evaluate, body, recipe, doctor)
 
 app = typer.Typer(
     name="whacamole",

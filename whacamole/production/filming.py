@@ -21,7 +21,7 @@ def plan_camera(take: Take, recipe: Recipe, shot_index: int) -> Plan:
     shortest, longest = np.log(recipe.focal_mm)
     lens = Lens.from_millimetres(float(np.exp(rng.uniform(shortest, longest))), *recipe.size)
     shots = recipe.shots[0] if len(recipe.shots) == 1 else recipe.shots
-    return direct(take.subject, lens, take.stage.world, shots, rng)
+    return direct(take.subject, lens, take.stage.world, shots, rng, interactive=take.motion.interactive)
 
 
 def camera_neighbours(path: CameraPath) -> CameraPath:

@@ -12,13 +12,7 @@ from whacamole.production.attempt import Outcome
 
 __all__ = ["ProgressDisplay"]
 
-STEPS = {
-    "motion": "reading",
-    "plan": "planning",
-    "scene": "staging",
-    "render": "rendering",
-    "label": "labelling",
-}
+STEPS = {"scene": "staging", "plan": "planning", "render": "rendering", "label": "labelling"}
 
 
 class ProgressDisplay:

@@ -11,8 +11,8 @@ from camera_rigs import Plan
 from render_jobs import RenderJob, quality_preset, run_job
 from whacamole.body import BodyModel
 from whacamole.dataset import DatasetLayout, Sequence, SequenceLayout, write_summary
-from whacamole.errors import DatasetError, MotionError, TakeError
-from whacamole.motion import Motion, read_motion
+from whacamole.errors import DatasetError, TakeError
+from whacamole.motion import read_motion
 from whacamole.production.filming import camera_neighbours, plan_camera
 from whacamole.production.labelling import write_labels
 from whacamole.production.preview import write_preview
@@ -21,7 +21,7 @@ from whacamole.recipe import Recipe
 from whacamole.seeds import generator
 from whacamole.take import Take, stage_take
 
-__all__ = ["Say", "body_of", "make_sequence"]
+__all__ = ["Say", "body_of", "make_sequence", "take_of"]
 
 SUBDIVISION = {"draft": 0, "standard": 0, "high": 1}
 """Levels for skin and clothes: the mesh is fine enough for all but close-ups."""
@@ -70,23 +70,8 @@ def _make_in(
 ) -> None:
     """Make all files of the sequence in the folder ``sequence``."""
     recipe, body = order.recipe, body_of(order.recipe)
-    say("step", name="motion")
-    motion = _read(order)
     say("step", name="scene")
-    try:
-        take = stage_take(
-            motion,
-            body,
-            frames=recipe.frames,
-            seed=recipe.seed,
-            shot_index=order.shot_index,
-            textures=work / "textures",
-            stages=recipe.stages,
-            companions=[read_motion(file, fps=recipe.fps) for file in order.companions],
-            subdivision=SUBDIVISION[recipe.quality],
-        )
-    except TakeError as error:
-        raise TakeError(f"{motion.path}: {error}") from error
+    take = take_of(order, textures=work / "textures")
     say("step", name="plan")
     plan = plan_camera(take, recipe, order.shot_index)
     job = render_job(take, plan, order)
@@ -110,11 +95,32 @@ def _make_in(
     write_summary(sequence, facts)
 
 
-def _read(order: SequenceOrder) -> Motion:
-    motion = read_motion(order.motion, fps=order.recipe.fps)
-    if not motion.people:
-        raise MotionError(f"{motion.path}: holds no person; leave the file out")
-    return motion
+def take_of(order: SequenceOrder, *, textures: Path | None) -> Take:
+    """Read the motions of an order and stage them.
+
+    Args:
+        textures: folder for textures; None stages for planning alone.
+
+    Raises:
+        MotionError, TakeError: a motion cannot be used; the message names its file.
+        BodyModelError: the recipe's body model cannot be used.
+    """
+    recipe = order.recipe
+    motion = read_motion(order.motion, fps=recipe.fps)
+    try:
+        return stage_take(
+            motion,
+            body_of(recipe),
+            frames=recipe.frames,
+            seed=recipe.seed,
+            shot_index=order.shot_index,
+            textures=textures,
+            stages=recipe.stages,
+            companions=[read_motion(file, fps=recipe.fps) for file in order.companions],
+            subdivision=SUBDIVISION[recipe.quality],
+        )
+    except TakeError as error:
+        raise TakeError(f"{motion.path}: {error}") from error
 
 
 def render_job(take: Take, plan: Plan, order: SequenceOrder) -> RenderJob:

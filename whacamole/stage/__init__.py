@@ -12,7 +12,7 @@ from whacamole.stage.stage import SetBuilder, Stage
 
 __all__ = ["STAGES", "SetBuilder", "Stage", "stage_rand"]
 
-STAGES: dict[str, Callable[[np.random.Generator, NDArray[np.float64], Path], Stage]] = {
+STAGES: dict[str, Callable[[np.random.Generator, NDArray[np.float64], Path | None], Stage]] = {
     "plaza": plaza,
     "park": park,
     "market": market,
@@ -27,13 +27,13 @@ STAGES: dict[str, Callable[[np.random.Generator, NDArray[np.float64], Path], Sta
 
 
 def stage_rand(
-    rng: np.random.Generator, paths: NDArray[np.float64], folder: Path, names: tuple[str, ...] = ()
+    rng: np.random.Generator, paths: NDArray[np.float64], folder: Path | None, names: tuple[str, ...] = ()
 ) -> Stage:
     """Draw one of the stages ``names`` (none: any of them) around ``paths``.
 
     Args:
         paths: (N, 2) ground positions that people will have [m].
-        folder: where textures are written.
+        folder: where textures are written; None paints none.
     """
     choice = names or tuple(STAGES)
     return STAGES[choice[int(rng.integers(len(choice)))]](rng, paths, folder)

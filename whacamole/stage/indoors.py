@@ -16,7 +16,7 @@ __all__ = ["living_room", "sports_hall", "warehouse"]
 Paths = NDArray[np.float64]
 
 
-def living_room(rng: np.random.Generator, paths: Paths, folder: Path) -> Stage:
+def living_room(rng: np.random.Generator, paths: Paths, folder: Path | None) -> Stage:
     """A lived-in room with a wooden floor, furniture along the walls and warm lamps."""
     build, floor = SetBuilder(folder), Floor(paths)
     height = float(rng.uniform(2.9, 3.5))
@@ -33,7 +33,7 @@ def living_room(rng: np.random.Generator, paths: Paths, folder: Path) -> Stage:
     return build.stage("living-room", lamps, Environment(color=(0.5, 0.5, 0.5), strength=0.15))
 
 
-def sports_hall(rng: np.random.Generator, paths: Paths, folder: Path) -> Stage:
+def sports_hall(rng: np.random.Generator, paths: Paths, folder: Path | None) -> Stage:
     """A hall with a marked wooden floor, benches and boxes, evenly lit."""
     build, floor = SetBuilder(folder), Floor(paths)
     height = float(rng.uniform(5.5, 7.0))
@@ -48,7 +48,7 @@ def sports_hall(rng: np.random.Generator, paths: Paths, folder: Path) -> Stage:
     return build.stage("sports-hall", lamps, Environment(color=(0.6, 0.65, 0.7), strength=0.15))
 
 
-def warehouse(rng: np.random.Generator, paths: Paths, folder: Path) -> Stage:
+def warehouse(rng: np.random.Generator, paths: Paths, folder: Path | None) -> Stage:
     """A store with a concrete floor, stacked crates and barrels, cold and uneven light."""
     build, floor = SetBuilder(folder), Floor(paths)
     height = float(rng.uniform(4.5, 6.0))

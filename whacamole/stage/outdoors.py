@@ -18,7 +18,7 @@ Paths = NDArray[np.float64]
 STREET_FURNITURE = ("crate", "planter", "column", "bench", "wall", "bollard")
 
 
-def plaza(rng: np.random.Generator, paths: Paths, folder: Path) -> Stage:
+def plaza(rng: np.random.Generator, paths: Paths, folder: Path | None) -> Stage:
     """A town square by day: paved, house fronts, street furniture."""
     build, floor = SetBuilder(folder), Floor(paths)
     texture = str(rng.choice(["paving", "paving", "asphalt", "concrete", "brick"]))
@@ -29,7 +29,7 @@ def plaza(rng: np.random.Generator, paths: Paths, folder: Path) -> Stage:
     return build.stage("plaza", (sun,), sky, exposure=0.6)
 
 
-def park(rng: np.random.Generator, paths: Paths, folder: Path) -> Stage:
+def park(rng: np.random.Generator, paths: Paths, folder: Path | None) -> Stage:
     """A meadow with trees, benches and a few walls."""
     build, floor = SetBuilder(folder), Floor(paths)
     ground(build, floor, "grass", float(rng.uniform(3.0, 4.5)), rng)
@@ -46,7 +46,7 @@ def park(rng: np.random.Generator, paths: Paths, folder: Path) -> Stage:
     return build.stage("park", (sun,), sky, exposure=0.7)
 
 
-def market(rng: np.random.Generator, paths: Paths, folder: Path) -> Stage:
+def market(rng: np.random.Generator, paths: Paths, folder: Path | None) -> Stage:
     """A lane of stalls between houses in the low light of morning or evening."""
     build, floor = SetBuilder(folder), Floor(paths)
     ground(build, floor, str(rng.choice(["brick", "paving", "concrete"])), float(rng.uniform(2.0, 3.0)), rng)
@@ -58,7 +58,7 @@ def market(rng: np.random.Generator, paths: Paths, folder: Path) -> Stage:
     return build.stage("market", (sun,), sky, exposure=0.9)
 
 
-def courtyard(rng: np.random.Generator, paths: Paths, folder: Path) -> Stage:
+def courtyard(rng: np.random.Generator, paths: Paths, folder: Path | None) -> Stage:
     """A yard closed in by houses, lit by an overcast sky: soft light, no hard shadow."""
     build, floor = SetBuilder(folder), Floor(paths)
     ground(build, floor, str(rng.choice(["paving", "concrete", "brick"])), float(rng.uniform(2.0, 3.5)), rng)
@@ -74,7 +74,7 @@ def courtyard(rng: np.random.Generator, paths: Paths, folder: Path) -> Stage:
     return build.stage("courtyard", (), light)
 
 
-def rooftop(rng: np.random.Generator, paths: Paths, folder: Path) -> Stage:
+def rooftop(rng: np.random.Generator, paths: Paths, folder: Path | None) -> Stage:
     """A flat roof at sunrise or sunset: parapets, vents, the light of an HDRI from low down."""
     build, floor = SetBuilder(folder), Floor(paths)
     ground(build, floor, str(rng.choice(["concrete", "asphalt", "wood"])), float(rng.uniform(2.5, 4.0)), rng)
@@ -97,7 +97,7 @@ def rooftop(rng: np.random.Generator, paths: Paths, folder: Path) -> Stage:
     return build.stage("rooftop", (), light, exposure=0.3)
 
 
-def night_street(rng: np.random.Generator, paths: Paths, folder: Path) -> Stage:
+def night_street(rng: np.random.Generator, paths: Paths, folder: Path | None) -> Stage:
     """A street at night under lamps: warm pools of light, dark fronts."""
     build, floor = SetBuilder(folder), Floor(paths)
     ground(build, floor, str(rng.choice(["asphalt", "paving"])), float(rng.uniform(2.4, 3.4)), rng)

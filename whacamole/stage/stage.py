@@ -41,10 +41,10 @@ class SetBuilder:
     """Collects solids and their textures while a stage is built.
 
     Args:
-        folder: where texture files are written.
+        folder: where texture files are written; None paints none.
     """
 
-    folder: Path
+    folder: Path | None
     meshes: list[Mesh] = field(default_factory=list)
     obstacles: list[Obstacle] = field(default_factory=list)
     bounds: tuple[Vector, Vector] | None = None
@@ -58,10 +58,17 @@ class SetBuilder:
         metres: float,
         roughness: float = 0.85,
     ) -> Material:
-        """Paint a texture that repeats every ``metres`` and return the material that shows it."""
+        """Paint a texture that repeats every ``metres`` and return the material that shows it.
+
+        One number is drawn from ``rng`` whether or not anything is painted, so that a stage which is only
+        planned on is the stage that will be filmed.
+        """
+        grain = int(rng.integers(2**63))
+        if self.folder is None:
+            return Material(name=name, roughness=roughness)
         self.folder.mkdir(parents=True, exist_ok=True)
         path = self.folder / f"{name}.png"
-        pixels = np.round(texture(rng) * 255.0).astype(np.uint8)
+        pixels = np.round(texture(np.random.default_rng(grain)) * 255.0).astype(np.uint8)
         Image.fromarray(pixels, "RGB").save(path, compress_level=1)
         return Material(name=name, base_color_texture=path, roughness=roughness, uv_scale=1.0 / metres)
 

@@ -34,7 +34,8 @@ class Performer:
         role: who plays: gender, shape, looks.
         params: SMPL-X parameters in the world frame, T + 2 frames.
         posed: body vertices (T + 2, V, 3) and joints (T + 2, 55, 3) in the world frame [m].
-        meshes: what is drawn of this person, each with T + 2 frames of vertices; the body first.
+        meshes: what is drawn of this person, each with T + 2 frames of vertices, the skin first; none where
+            the take is only planned.
     """
 
     track_id: int
@@ -100,7 +101,7 @@ def stage_take(
     frames: int,
     seed: int,
     shot_index: int,
-    textures: Path,
+    textures: Path | None,
     stages: tuple[str, ...] = (),
     companions: Sequence[Motion] = (),
     subdivision: int = 0,
@@ -110,7 +111,7 @@ def stage_take(
     Args:
         frames: most frames to film; 0 for the whole motion.
         seed: of the dataset.
-        textures: folder for textures made for this take.
+        textures: folder for textures made for this take; None stages for planning alone, with nothing drawn.
         stages: names of stages to draw from; none: all.
         companions: motions of further people, unrelated to the first; those that find no free place stay out.
         subdivision: levels for skin and clothes.
@@ -147,7 +148,11 @@ def stage_take(
             role,
             params,
             posed,
-            role.meshes(body, params, posed, textures=textures, track_id=number, subdivision=subdivision),
+            ()
+            if textures is None
+            else role.meshes(
+                body, params, posed, textures=textures, track_id=number, subdivision=subdivision
+            ),
         )
         for number, (motion_id, role, params, posed) in enumerate(people, start=1)
     )
