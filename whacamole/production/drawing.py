@@ -18,6 +18,9 @@ WIDTH, VIEW_HEIGHT, MARGIN = 760, 480, 36
 FRUSTUM_LENGTH = 0.7
 """Length of a drawn frustum [m]."""
 
+OVERHEAD = 2.5
+"""What begins above this height [m] (a ceiling) would hide the scene in a view from above."""
+
 FRUSTA = 9
 """How many are drawn along a path."""
 
@@ -46,10 +49,11 @@ class _View:
         style = f'fill="none" stroke="{color}" stroke-width="{width}"'
         return f'<polyline points="{self._at(points)}" {style}/>'
 
-    def outline(self, corners: Points) -> str:
-        """Return the filled outline of a convex solid with these corners (N, 3)."""
+    def outline(self, corners: Points, *, filled: bool) -> str:
+        """Return the outline of a convex solid with these corners (N, 3)."""
         hull = ConvexHull(corners[:, self._axes]).vertices
-        return f'<polygon points="{self._at(corners[hull])}" fill="{OBSTACLE_COLOR}"/>'
+        style = f'fill="{OBSTACLE_COLOR if filled else "none"}" stroke="{OBSTACLE_COLOR}"'
+        return f'<polygon points="{self._at(corners[hull])}" {style}/>'
 
     def dot(self, point: Points, color: str, radius: float) -> str:
         """Return a disc at a world point."""
@@ -91,8 +95,9 @@ def _draw(view: _View, plan: Plan, subject: SubjectTrack, world: World) -> Itera
     yield f'<clipPath id="{clip}"><rect y="{view.top}" width="{WIDTH}" height="{VIEW_HEIGHT}"/></clipPath>'
     yield f'<g clip-path="url(#{clip})">'
     for obstacle in world.obstacles:
-        corners = _corners(obstacle)
-        yield view.outline(corners)
+        overhead = obstacle.center[2] - obstacle.size[2] / 2.0 > OVERHEAD
+        if not overhead:
+            yield view.outline(_corners(obstacle), filled=view.name == "above")
     for person in subject.people_pelvis:
         yield view.line(person, PEOPLE_COLOR, 2.0)
         yield view.dot(person[0], PEOPLE_COLOR, 4.0)
