@@ -14,6 +14,7 @@ from whacamole.body import BodyModel, BodyParams
 from whacamole.wardrobe.cast import CastMember
 from whacamole.wardrobe.catalogue import Catalogue, Item, catalogue
 from whacamole.wardrobe.layer import item_layer, join
+from whacamole.wardrobe.layering import tuck_all
 from whacamole.wardrobe.textures import TextureFolder, eye_texture, item_texture, skin_texture
 
 Float32Array = npt.NDArray[np.float32]
@@ -125,8 +126,8 @@ def _body_meshes(
 
 def _cut(vertices: Float32Array, faces: Int32Array) -> tuple[Float32Array, Int32Array]:
     """The vertices (T, n, 3) that some faces use, and the faces in their numbers."""
-    used = np.unique(faces)
-    number = np.zeros(vertices.shape[1], dtype=np.int32)
+    used = np.unique(faces[faces >= 0])
+    number = np.full(vertices.shape[1] + 1, -1, dtype=np.int32)  # the last is for the −1 of triangles
     number[used] = np.arange(len(used))
     return vertices[:, used], number[faces]
 
@@ -150,12 +151,14 @@ def _item_meshes(
     folder: TextureFolder,
 ) -> Iterator[Mesh]:
     layers = [item_layer(wardrobe, item.name) for item in items]
-    posed = join(layers).pose(body, params)
+    tucked = tuck_all(wardrobe, tuple(items))
+    posed = join(layers).pose(body, params, push=np.concatenate([under.push for under in tucked]))
     start = 0
-    for worn, item, layer in zip(member.worn, items, layers, strict=True):
+    for worn, item, layer, under in zip(member.worn, items, layers, tucked, strict=True):
         vertices = posed[:, start : start + layer.num_vertices]
         start += layer.num_vertices
         geometry = wardrobe.geometry(item.name)
+        seen = ~under.hidden[geometry.faces].all(axis=1)
         material = Material(
             base_color_texture=item_texture(wardrobe, item, worn, member.hair_colour, folder),
             alpha_mode="clip" if item.see_through else "opaque",
@@ -164,4 +167,6 @@ def _item_meshes(
             normal_texture=wardrobe.texture(item.normal) if item.normal else None,
         )
         fine = item.see_through or len(geometry.faces) > 3500
-        yield look.mesh(item.name, vertices, geometry.faces, material, geometry.uv, fine=fine)
+        yield look.mesh(
+            item.name, *_cut(vertices, geometry.faces[seen]), material, geometry.uv[seen], fine=fine
+        )
