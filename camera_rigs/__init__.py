@@ -1,11 +1,11 @@
 """Where the camera is: film-crew camera moves around people, in NumPy and SciPy alone."""
 
-from camera_rigs.director import direct
 from camera_rigs.errors import PlanError
 from camera_rigs.export import to_nerfstudio, to_tum
 from camera_rigs.lens import Lens
 from camera_rigs.path import CameraPath, look_at
 from camera_rigs.plan import Mend, Plan, evidence_from_document, judge_document
+from camera_rigs.planning import direct
 from camera_rigs.rules import RULES, Evidence, Finding, Limits, judge
 from camera_rigs.scene import SCALES
 from camera_rigs.shake import Shake

@@ -7,10 +7,10 @@ are drawn anew, and at last the plan opens from another angle and distance. `Pla
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from camera_rigs.director import Director
 from camera_rigs.errors import PlanError
 from camera_rigs.joins import compose, transition_half
 from camera_rigs.opening import opening_rand
@@ -22,9 +22,6 @@ from camera_rigs.shake import Shake
 from camera_rigs.shot import Draft
 from camera_rigs.shots.catalogue import KINDS
 
-if TYPE_CHECKING:
-    from camera_rigs.director import Director
-
 CALM = (1.0, 1.0, 0.6, 0.3)
 """Shares of the usual movement with which the first kind of shot is drawn and redrawn."""
 
@@ -32,7 +29,7 @@ CALM_SUBSTITUTE = (0.6, 0.2)
 """The same for the kinds that replace it."""
 
 BACKTRACKS = 4
-"""How often the shots before a dead end are drawn anew before the plan opens anew."""
+"""How often the shots before a dead end are drawn anew, one more each time, before the plan opens anew."""
 
 _NO_ROOM = "no room: "
 """How the reason of a planner that could not plan begins."""
@@ -58,7 +55,7 @@ class Drafting:
         self,
         rng: np.random.Generator,
         scene: Scene,
-        director: "Director",
+        director: Director,
         limits: Limits,
         shake: Shake | None,
         attempt: int,
@@ -84,28 +81,34 @@ class Drafting:
         opening = opening_rand(self.rng, self.scene, self.director.style, order[0], self.attempt)
         if self.attempt:
             self.mends.append(Mend(0, "", "opening moved", f"{self.attempt} openings led to a dead end"))
-        stuck = 0
+        furthest = stuck = 0
         while len(self.drafts) < len(spans):
             index = len(self.drafts)
+            if index > furthest:
+                furthest, stuck = index, 0
             if index:
                 order = self.director.preferences(self.rng, spans[index], self.drafts[-1].shot.kind)
-            draft = self._draft(spans, index, order, opening)
+            draft = self._draft(spans[index], order, opening)
             if draft is not None:
                 self.drafts.append(draft)
                 continue
             stuck += 1
             if index == 0 or stuck > BACKTRACKS:
                 return False
-            dropped = min(index, stuck)
-            del self.drafts[index - dropped :]
-            self.mends = [mend for mend in self.mends if mend.shot < index - dropped]
-            reason = f"no shot from frame {spans[index].start} on was without a breach"
-            self.mends.append(Mend(index - dropped, "", "drawn anew", reason))
+            self._drop(min(index, stuck), spans[index].start)
         return True
 
-    def _draft(self, spans: list[Span], index: int, order: list[str], opening: View) -> Draft | None:
+    def _drop(self, count: int, frame: int) -> None:
+        """Drop the last drafts because no shot goes on from them at `frame`."""
+        del self.drafts[-count:]
+        index = len(self.drafts)
+        self.mends = [mend for mend in self.mends if mend.shot < index]
+        self.mends.append(
+            Mend(index, "", "drawn anew", f"no shot from frame {frame} on was without a breach")
+        )
+
+    def _draft(self, span: Span, order: list[str], opening: View) -> Draft | None:
         """A draft for a span without a breach; None if there is none."""
-        span = spans[index]
         view = self._view(span, opening)
         fewest: tuple[int, Draft] | None = None
         dropped: dict[str, str] = {}
@@ -120,7 +123,7 @@ class Drafting:
                 continue
             findings = self._judge(draft, span)
             if not findings:
-                self._record(index, name, dropped)
+                self._record(name, dropped)
                 return draft
             dropped.setdefault(name, findings[0].message)
             if fewest is None or len(findings) < fewest[0]:
@@ -145,16 +148,16 @@ class Drafting:
         shots = tuple(d.shot for d in (*before, draft))
         return judge(Evidence(path, scene.subject, scene.world, shots, self._strict, first=lo))
 
-    def _record(self, index: int, name: str, failed: dict[str, str]) -> None:
+    def _record(self, name: str, dropped: dict[str, str]) -> None:
         """Note what was dropped before the draft of kind `name` was found.
 
         That one kind had no room is nothing to tell while another one that was asked for takes its place.
         """
-        for kind, reason in failed.items():
+        for kind, reason in dropped.items():
             if reason.startswith(_NO_ROOM) and name in self.director.cast:
                 continue
             action = "redrawn" if kind == name else f"replaced by {name}"
-            self.mends.append(Mend(index, kind, action, reason))
+            self.mends.append(Mend(len(self.drafts), kind, action, reason))
 
 
 def _tries(order: list[str]) -> Iterator[tuple[str, float]]:

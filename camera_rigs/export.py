@@ -1,5 +1,4 @@
-"""Camera paths in formats that other tools read, as text and dictionaries; writing files is left to the
-caller."""
+"""Camera paths in formats that other tools read, as text and dictionaries; no files are written."""
 
 from typing import Any
 

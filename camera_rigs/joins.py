@@ -26,32 +26,38 @@ TRANSITION_SECONDS = 1.0
 """Length [s] of the change from one move to the next, half before and half after the shared frame."""
 
 EASE_SECONDS = 0.75
-"""Time [s] in which a movement gathers or loses its speed at a joint: that of a dolly grip, no jerk to be
-seen."""
+"""Time [s] in which a movement gathers or loses its speed at a joint: that of a dolly grip."""
 
 _STATE = 8
 """Numbers of a camera at one frame: location 3, target 3, focal length, roll."""
 
 
-def cut(num_frames: int, fps: float, rng: np.random.Generator) -> list[Span]:
-    """Spans of random length in [`MIN_SHOT_SECONDS`, `MAX_SHOT_SECONDS`] that cover the frames.
+def cut(
+    num_frames: int,
+    fps: float,
+    rng: np.random.Generator,
+    *,
+    shot_seconds: tuple[float, float] = (MIN_SHOT_SECONDS, MAX_SHOT_SECONDS),
+    ease_seconds: float = EASE_SECONDS,
+) -> list[Span]:
+    """Spans of random length in `shot_seconds` that cover the frames; neighbours share one.
 
-    Neighbours share a frame. A clip shorter than two shortest shots is one span.
+    A clip shorter than two shortest shots is one span.
     """
-    shortest = max(MIN_SHOT_SECONDS * fps, 2.0 * transition_half(fps))
+    shortest = max(shot_seconds[0] * fps, 2.0 * transition_half(fps))
     joints = [0]
     while (left := num_frames - 1 - joints[-1]) >= 2.0 * shortest:
-        longest = max(min(MAX_SHOT_SECONDS * fps, left - shortest), shortest)
+        longest = max(min(shot_seconds[1] * fps, left - shortest), shortest)
         joints.append(joints[-1] + int(np.ceil(rng.uniform(shortest, longest))))
-    return spans_between([*joints, num_frames - 1], fps)
+    return spans_between([*joints, num_frames - 1], fps, ease_seconds)
 
 
-def spans_between(joints: Sequence[int], fps: float) -> list[Span]:
-    """Spans between `joints`, the first frame 0 and the last frame included."""
+def spans_between(joints: Sequence[int], fps: float, ease_seconds: float = EASE_SECONDS) -> list[Span]:
+    """Spans between `joints`, the first frame 0 and the last frame included; they ease at inner joints."""
     half, last = transition_half(fps), joints[-1]
     spans = []
     for start, end in itertools.pairwise(joints):
-        ease = min(EASE_SECONDS * fps, 0.5 * max(end - start, 1))
+        ease = min(ease_seconds * fps, 0.5 * max(end - start, 1))
         lo, hi = max(start - half, 0), min(end + half, last)
         spans.append(Span(start, end, lo, hi, ease if start > 0 else 0.0, ease if end < last else 0.0))
     return spans
@@ -63,8 +69,7 @@ def transition_half(fps: float) -> int:
 
 
 def join(before: Array, after: Array, half: int) -> Array:
-    """The transition (2·half + 1, n) between two moves given over the same frames, the joint in the
-    middle."""
+    """The transition (2·half + 1, n) between two moves over the same frames, the joint in the middle."""
     tau = np.arange(-half, half + 1, dtype=float)[:, None]
     u = (tau + half) / (2.0 * half)
     step = smootherstep(u)

@@ -103,6 +103,5 @@ def look_at(eye: ArrayLike, target: ArrayLike, roll: ArrayLike = 0.0) -> Array:
 
 
 def aimed_path(eye: Array, target: Array, focal: Array, roll: Array, lens: Lens, fps: float) -> CameraPath:
-    """The path of cameras at `eye` that look at `target` (T, 3), with focal lengths [px] and rolls [rad]
-    (T,)."""
+    """The path of cameras at `eye` that look at `target` (T, 3); focal lengths [px], rolls [rad] (T,)."""
     return CameraPath(lens.intrinsics(focal), look_at(eye, target, roll), fps, lens.width, lens.height)

@@ -28,7 +28,8 @@ class Mend:
     Attributes:
         shot: index of the shot in the plan.
         kind: the kind of the draft that was dropped.
-        action: what was done instead: "redrawn", "replaced by …", "shots before it redrawn", "opening moved".
+        action: what was done instead: "redrawn", "replaced by …", "drawn anew" (with the shots after it),
+            "opening moved".
         reason: the finding's message, or why the planner had no room.
     """
 
@@ -146,8 +147,4 @@ def judge_document(
     limits: Limits | None = None,
 ) -> tuple[Finding, ...]:
     """The findings of `judge` on a stored plan; arguments and errors as in `evidence_from_document`."""
-    evidence = evidence_from_document(document, K, T_world_camera, width, height, limits=limits)
-    try:
-        return judge(evidence)
-    except KeyError as error:
-        raise PlanError(f"plan: parameter {error} of a shot is missing, plan anew") from error
+    return judge(evidence_from_document(document, K, T_world_camera, width, height, limits=limits))

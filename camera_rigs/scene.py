@@ -1,5 +1,4 @@
-"""The scene a shot is planned in: people, lens and surroundings; the shot scales; the view; the span of
-frames."""
+"""The scene a shot is planned in; the shot scales; the view; the span of frames."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -14,8 +13,7 @@ from camera_rigs.subject import SubjectTrack
 from camera_rigs.world import World
 
 WIDTH_SHARE = 0.9
-"""The people span at most this share of the width of the view; where the height asks less, the camera
-stands back."""
+"""The people span at most this share of the width of the view, or the camera stands back."""
 
 HEAD = 0.15
 """Half width [m] kept around every neck in medium shots and close-ups: no head is cut."""
@@ -124,8 +122,7 @@ class Scene:
         return float(achieved_fraction(above, below, r, theta, focal, self.lens.height))
 
     def lowest_theta(self, lo: int, hi: int, r: float, scale: Scale) -> float:
-        """The largest polar angle [rad] that keeps a camera at distance `r` over the ground from `lo` to
-        `hi`."""
+        """The largest polar angle [rad] that keeps a camera at `r` over the ground from `lo` to `hi`."""
         anchor_z = float(self.subject.anchor(scale.anchor)[lo : hi + 1, 2].min())
         room = anchor_z - self.world.ground_z - HEADROOM_OVER_GROUND
         return float(np.clip(np.arccos(np.clip(-room / r, -1.0, 1.0)), THETA_MIN, THETA_MAX))
@@ -133,8 +130,7 @@ class Scene:
 
 @dataclass(frozen=True)
 class View:
-    """A camera at one moment in the human-centric frame: the scale, (r, θ_c, φ_c) and the focal length
-    [px]."""
+    """A camera at one moment in the human-centric frame: scale, (r, θ_c, φ_c), focal length [px]."""
 
     scale: Scale
     r: float
@@ -187,8 +183,7 @@ class Span:
         return cushioned(frames - self.start, self.length, self.ease_in, self.ease_out)
 
     def times(self, progress: Array) -> Array:
-        """The (fractional) frames at which a movement has come as far as `progress`; inverts the method
-        above."""
+        """The (fractional) frames at which a movement has come as far as `progress`."""
         grid = np.linspace(self.start, self.start + self.length, 64 * self.length + 1)
         found: Array = np.interp(progress, self.progress(grid), grid)
         return np.where(

@@ -1,5 +1,4 @@
-"""What a shot planner returns: the shot as a record (keyframes, parameters) and its move (a camera per
-frame)."""
+"""What a shot planner returns: the shot as a record, and its move, a camera per frame."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -12,7 +11,7 @@ from camera_rigs.scene import Scale, Scene, Span
 from camera_rigs.smoothing import at
 from camera_rigs.spherical import Array, cartesian_to_spherical, wrap
 
-Parameter = float | int | str | bool
+Parameter = float | int | str | bool | list[float]
 Point = tuple[float, float, float]
 
 
@@ -60,6 +59,13 @@ class Shot:
     parameters: Mapping[str, Parameter]
     keyframes: tuple[Keyframe, ...]
 
+    def number(self, name: str) -> float:
+        """The parameter `name`; `PlanError` where it is missing or no number."""
+        value = self.parameters.get(name)
+        if not isinstance(value, int | float):
+            raise PlanError(f"{self.kind} from frame {self.start}: parameter {name!r} is missing, plan anew")
+        return float(value)
+
     @classmethod
     def from_json(cls, document: Mapping[str, Any]) -> "Shot":
         """The shot of its entry in `Plan.to_json`."""
@@ -84,8 +90,7 @@ def _keyframe_from_json(entry: Mapping[str, Any]) -> Keyframe:
 
 @dataclass(frozen=True)
 class Move:
-    """A camera from frame `lo` on: location, point looked at (N, 3) [m], focal length [px], roll [rad]
-    (N,)."""
+    """A camera from frame `lo` on: eye, target (N, 3) [m], focal length [px] and roll [rad] (N,)."""
 
     lo: int
     eye: Array
@@ -121,8 +126,7 @@ def record(
     parameters: Mapping[str, Parameter],
     keyframes: Iterable[Keyframe],
 ) -> Shot:
-    """The shot over a span. In a clip of one frame a movement ends before its last keyframe, which is left
-    out."""
+    """The shot over a span, without keyframes after it: in a clip of one frame no movement ends."""
     inside = tuple(keyframe for keyframe in keyframes if keyframe.frame <= span.end)
     return Shot(kind, scale.name, span.start, span.end, parameters, inside)
 

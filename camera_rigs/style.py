@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from camera_rigs.errors import PlanError
+from camera_rigs.joins import EASE_SECONDS, MAX_SHOT_SECONDS, MIN_SHOT_SECONDS
 from camera_rigs.scene import SCALES
 from camera_rigs.shots.catalogue import check_options
 
@@ -41,8 +42,7 @@ TURNING: Mapping[str, float] = {"pan": 6.0, "follow": 2.0, "static": 1.0, "dolly
 """Long-distance motion whose facing turns: pan, as the paper says."""
 
 REPEAT = 0.1
-"""Factor on the weight of the kind that has just been shown: a vertical arc mostly follows a horizontal
-one."""
+"""Factor on the weight of the kind that static motion was just shown with: arcs mostly alternate."""
 
 
 @dataclass(frozen=True)
@@ -54,6 +54,8 @@ class Style:
         lambda_angle: the facing is stable if it has turned less since the last keyframe [rad].
         scales: names of the shot scales that plans open with; each is as likely as the others.
         opening_phi: largest |φ_c| that a plan opens with [rad].
+        shot_seconds: shortest and longest shot [s].
+        ease_seconds: time in which a movement gathers and loses its speed at a joint [s]; 0 is linear.
         window_seconds: λ_bbox is asked of the anchor's path over the shot and the time around it [s].
         weights: weights of the kinds of shot by situation: "static", "travelling", "turning".
         options: ranges that replace a planner's own, by kind of shot: {"orbit": {"angle": (1.0, 2.0)}}.
@@ -63,6 +65,8 @@ class Style:
     lambda_angle: float = float(np.radians(45.0))
     scales: tuple[str, ...] = ("full", "medium")
     opening_phi: float = float(np.radians(135.0))
+    shot_seconds: tuple[float, float] = (MIN_SHOT_SECONDS, MAX_SHOT_SECONDS)
+    ease_seconds: float = EASE_SECONDS
     window_seconds: float = 6.0
     weights: Mapping[str, Mapping[str, float]] = field(
         default_factory=lambda: {"static": STATIC, "travelling": TRAVELLING, "turning": TURNING}
@@ -74,3 +78,9 @@ class Style:
         check_options(self.options)
         if unknown or not self.scales:
             raise PlanError(f"shot scales {list(self.scales)}: choose from {', '.join(SCALES)}")
+        if not MIN_SHOT_SECONDS <= self.shot_seconds[0] <= self.shot_seconds[1]:
+            raise PlanError(
+                f"shot_seconds {self.shot_seconds}: give at least {MIN_SHOT_SECONDS} s, then no less"
+            )
+        if not self.ease_seconds >= 0.0:
+            raise PlanError(f"ease_seconds {self.ease_seconds}: must not be negative")

@@ -19,20 +19,16 @@ dance (0.5 Hz to 17 %), which would swing a camera that travels with it; keeps t
 a turn."""
 
 FACING_SMOOTHING = 0.5
-"""Standard deviation [s] of the facing's low-pass: takes out nods and hip swing, leaves the turns of a
-walk."""
+"""Standard deviation [s] of the facing's low-pass: takes out nods and hip swing, leaves turns."""
 
 EXTENT_SMOOTHING = 0.5
-"""Standard deviation [s] of the boxes' low-pass: an arm thrown up is no reason for the camera to step
-back."""
+"""Standard deviation [s] of the boxes' low-pass: an arm thrown up is no reason to step back."""
 
 OPPOSITE_FACING = 0.5
-"""A mean facing shorter than this: the people face each other or turn away, and the camera looks across
-them."""
+"""A mean facing shorter than this: the people face each other or turn away; the camera looks across."""
 
 LYING_SHARE = 0.6
-"""A person is framed as at least this share of the longest side of the box: who lies is not a small
-object."""
+"""A person is framed as at least this share of the longest side of the box: who lies is not small."""
 
 FORESIGHT_SECONDS = 3.0
 """How long before and after [s] the crew knows the choreography when it chooses a distance to stand off."""
@@ -225,8 +221,7 @@ class SubjectTrack:
         return self._motion_bounds[order]
 
     def rounded(self) -> "SubjectTrack":
-        """The same people to the millimetre, as `to_json` writes them: what is planned for is what is
-        stored."""
+        """The same people to the millimetre: what is planned for is what `to_json` stores."""
         return self.from_people(
             self.people_pelvis.round(3),
             self.people_neck.round(3),
@@ -258,8 +253,7 @@ class SubjectTrack:
 
 
 def _common_facing(pelvis: Array, facing: Array) -> Array:
-    """The mean facing (T, 3) in the ground plane; across the group where the facings cancel each other
-    out."""
+    """The mean facing (T, 3) in the ground plane; across the group where the facings cancel out."""
     flat = facing.copy()
     flat[..., 2] = 0.0
     length = np.linalg.norm(facing, axis=-1, keepdims=True)

@@ -65,7 +65,8 @@ def in_frame(evidence: Evidence) -> list[Finding]:
         part = slice(max(shot.start - evidence.first, 0), max(shot.end + 1 - evidence.first, 0))
         wanted = seen[part] if SCALES[shot.scale].anchor == "pelvis" else seen[part, :1]
         if shot.kind == "over-shoulder":
-            wanted = wanted[..., [1 - int(shot.parameters["person"])]]
+            focus = 1 - int(shot.number("person"))
+            wanted = wanted[..., focus : focus + 1]
         out[part] |= ~wanted.all(axis=(1, 2))
     return _longest(evidence, "in-frame", out, evidence.limits.out_seconds)
 

@@ -26,8 +26,8 @@ def _spherical(evidence: Evidence, shot: Shot, begin: int, end: int) -> tuple[Ar
 def _swept(shot: Shot, theta: Array, phi: Array) -> tuple[Array, float]:
     """The angle that an arc sweeps, θ or φ, and the whole of it as it was asked for [rad]."""
     if shot.kind == "arc-vertical":
-        return theta, float(shot.parameters["delta_theta"])
-    return phi, float(shot.parameters["delta_phi"])
+        return theta, shot.number("delta_theta")
+    return phi, shot.number("delta_phi")
 
 
 def _shake_angle(evidence: Evidence, r: Array) -> float:
@@ -80,7 +80,7 @@ def radius(evidence: Evidence) -> list[Finding]:
         r, _, _ = _spherical(evidence, shot, begin, end)
         frames = np.arange(begin, end + 1)
         if shot.kind in (*ARCS, "tracking", "follow") and not shot.parameters.get("fracs"):
-            wanted = float(shot.parameters["radius"])
+            wanted = shot.number("radius")
             error = np.abs(r / wanted - 1.0)
         elif shot.kind in ("push", "pull") and begin < end:
             wanted = float(r[0])
@@ -99,7 +99,7 @@ def tracking_place(evidence: Evidence) -> list[Finding]:
     for shot, keyframes in evidence.settled_keyframes():
         if shot.kind != "tracking":
             continue
-        wanted = [float(shot.parameters[name]) for name in ("radius", "theta", "phi")]
+        wanted = [shot.number(name) for name in ("radius", "theta", "phi")]
         errors = np.array([_misplacement(evidence, shot, k, *wanted) for k in keyframes])
         frames = np.array([k.frame for k in keyframes])
         slack = evidence.shake.bound(0) * np.sqrt(3.0) if evidence.shake else 0.0
@@ -116,14 +116,13 @@ def _misplacement(evidence: Evidence, shot: Shot, k: Keyframe, r: float, theta: 
 
 
 def overlap(evidence: Evidence) -> list[Finding]:
-    """Tracking and pan set a keyframe when, and only when, the box overlaps the last one by less than
-    λ_overlap."""
+    """A keyframe of tracking or pan is set if and only if the boxes overlap by less than λ_overlap."""
     findings = []
     gap = min_keyframe_gap(evidence.subject.fps)
     for shot in evidence.shots:
         if shot.kind not in ("tracking", "pan"):
             continue
-        limit = float(shot.parameters["lambda_overlap"])
+        limit = shot.number("lambda_overlap")
         low, high = limit - evidence.limits.overlap, limit + evidence.limits.overlap
         frames = [round(k.frame) for k in shot.keyframes]
         for last, fresh in itertools.pairwise(frames):

@@ -10,7 +10,7 @@ import numpy as np
 
 from camera_rigs.errors import PlanError
 from camera_rigs.scene import THETA_MIN, Scene, Span, View
-from camera_rigs.shot import Draft, Keyframe, Move, Parameter, keyframe_at, record
+from camera_rigs.shot import Draft, Move, Parameter, keyframe_at, record
 from camera_rigs.shots.pace import ANGULAR_SPEED, RIG_SPEED, Range, draw, radial, random_fracs
 from camera_rigs.smoothing import at
 from camera_rigs.spherical import Array, spherical_to_cartesian
@@ -24,6 +24,9 @@ ANGLES: dict[str, Range] = {
     "low": (np.radians(96.0), np.radians(106.0)),
 }
 """Polar angles [rad] of high, eye-level and low angles, between which vertical arcs pass."""
+
+MIN_RISE = np.radians(8.0)
+"""Least change of the polar angle [rad] that a vertical arc goes for."""
 
 
 def plan_arc(
@@ -42,8 +45,8 @@ def plan_arc(
         scene, span, view: the scene, the frames and the view at the first frame.
         delta_phi: angle of the whole horizontal arc, signed.
         delta_theta: angle of the whole vertical arc, signed; negative rises.
-        fracs: fractions of the view reached at times equally spaced after the first frame, a push and pull
-            along the arc. Without any the distance is kept.
+        fracs: fractions of the view reached one after the other, at equal parts of the arc: a push and pull
+            along it. Without any the distance is kept.
         kind: name under which the shot is listed.
 
     Raises:
@@ -63,38 +66,32 @@ def plan_arc(
         )
         return scene.anchor(view.scale, frames) + offset
 
-    count = max(2, round(span.length / scene.fps * KEYFRAMES_PER_SECOND) + 1)
-    times = span.times(np.linspace(0.0, 1.0, count))
-    keyframes = [_keyframe(scene, view, t, place(t), heading) for t in times]
-    if len(fracs):
-        ending = keyframes.pop()
-        keyframes.append(
-            _keyframe(scene, view, ending.frame, np.array(ending.location), heading, reached[-1])
-        )
+    parts = max(1, round(span.length / scene.fps * KEYFRAMES_PER_SECOND))
+    each = -(-parts // max(len(fracs), 1))  # every fraction falls on a keyframe
+    times = span.times(np.linspace(0.0, 1.0, each * max(len(fracs), 1) + 1))
+    asked = dict(zip(range(each, len(times), each), reached, strict=False))
+    keyframes = [
+        keyframe_at(scene, view.scale, time, place(time), view.focal, heading=heading, frac=asked.get(index))
+        for index, time in enumerate(times)
+    ]
     parameters: dict[str, Parameter] = {
         "delta_phi": delta_phi,
         "delta_theta": delta_theta,
         "radius": view.r,
-        "fracs": " ".join(f"{frac:.3f}" for frac in reached),
+        "fracs": reached,
     }
     move = Move.level(span, place(span.frames), scene.anchor(view.scale, span.frames), view.focal)
     return Draft(record(kind, view.scale, span, parameters, keyframes), move)
-
-
-def _keyframe(
-    scene: Scene, view: View, time: float, location: Array, heading: float, frac: float | None = None
-) -> Keyframe:
-    return keyframe_at(scene, view.scale, time, location, view.focal, heading=heading, frac=frac)
 
 
 def _radii(
     scene: Scene, span: Span, view: View, fracs: Sequence[float], delta_theta: float
 ) -> tuple[Array, list[float]]:
     """Radii (n + 1,) and fractions (n,) of the push and pull along an arc."""
-    times = span.start + span.length * np.linspace(0.0, 1.0, len(fracs) + 1)
     radii, reached = [view.r], []
-    for time, frac in zip(times[1:], fracs, strict=True):
-        theta = view.theta + delta_theta * float(span.progress(np.asarray(time)))
+    for index, frac in enumerate(fracs, start=1):
+        share = index / len(fracs)
+        time, theta = float(span.times(np.asarray(share))), view.theta + delta_theta * share
         r, achieved = scene.framing(time, frac, theta, view.scale, view.focal)
         radii.append(r)
         reached.append(achieved)
@@ -146,11 +143,13 @@ def plan_arc_vertical_rand(
         angles: ranges of the polar angle [rad] to go to, by name; the ground ends a low angle.
         push_pull: probability that the arc pushes and pulls at the same time.
     """
-    ranges = list((angles or ANGLES).values())
-    away = [goal for goal in ranges if not goal[0] <= view.theta <= goal[1]] or ranges
-    theta = draw(rng, away[int(rng.integers(len(away)))])
     lowest = scene.lowest_theta(span.lo, span.hi, view.r, view.scale)
+    goals = [float(np.clip(draw(rng, limits), THETA_MIN, lowest)) for limits in (angles or ANGLES).values()]
+    goals = [goal for goal in goals if abs(goal - view.theta) > MIN_RISE]
+    if not goals:
+        raise PlanError("no vertical arc: the ground leaves no other angle")
+    theta = goals[int(rng.integers(len(goals)))]
     reach = span.within(RIG_SPEED, scene.fps) / view.r
-    delta = float(np.clip(np.clip(theta, THETA_MIN, lowest) - view.theta, -reach, reach)) * calm
+    delta = float(np.clip(theta - view.theta, -reach, reach)) * calm
     fracs = random_fracs(rng, scene, span, view, calm) if rng.random() < push_pull else ()
     return plan_arc(scene, span, view, delta_theta=delta, fracs=fracs, kind="arc-vertical")

@@ -42,8 +42,7 @@ def plan_boom_rand(
     calm: float = 1.0,
     height: Range = BOOM_HEIGHT,
 ) -> Draft:
-    """A boom up or down by a height drawn from a range, within `RIG_SPEED` and between the steepest
-    angles."""
+    """A boom up or down by a random height, within `RIG_SPEED` and between the steepest angles."""
     start = view.location(scene, span.start)
     anchor_z = scene.anchor(view.scale, span.frames)[:, 2]
     ring = view.r * np.sin(view.theta)

@@ -148,16 +148,19 @@ _COMMON = ("rng", "scene", "span", "view", "calm")
 """Arguments that every `_rand` twin takes."""
 
 
+def named_shots(shots: str | Iterable[str]) -> tuple[str, ...]:
+    """The words of `shots`, a comma list or a sequence of names."""
+    return tuple(word.strip() for word in (shots.split(",") if isinstance(shots, str) else shots))
+
+
 def resolve_shots(shots: str | Iterable[str]) -> tuple[str, ...]:
-    """The kinds that `shots` names: "auto", "all", or names (a comma list or a sequence), "arc" for both
-    arcs.
+    """The kinds that `shots` names: kinds and `GROUPS`, in a comma list or a sequence.
 
     Raises:
         PlanError: a name is unknown, or none is given.
     """
-    asked = shots.split(",") if isinstance(shots, str) else list(shots)
     names: dict[str, None] = {}
-    for word in (word.strip() for word in asked):
+    for word in named_shots(shots):
         if word not in GROUPS and word not in KINDS:
             raise PlanError(f"shot {word!r} is unknown: choose from {', '.join((*GROUPS, *KINDS))}")
         names.update(dict.fromkeys(GROUPS.get(word, (word,))))

@@ -11,8 +11,7 @@ DOLLY_DISTANCE: Range = (0.5, 3.0)
 """Range [m] of the way along the track: one to three lengths of common track."""
 
 TRAVELLED = 0.5
-"""People who cover more than this [m] get a track along their way; beside others it is laid across the
-view."""
+"""People who cover more than this [m] get a track along their way; others one across the view."""
 
 
 def plan_dolly(scene: Scene, span: Span, view: View, *, azimuth: float, distance: float) -> Draft:
@@ -40,8 +39,7 @@ def plan_dolly_rand(
     calm: float = 1.0,
     distance: Range = DOLLY_DISTANCE,
 ) -> Draft:
-    """A dolly beside people who travel, over the way that they cover; else across the view, to either
-    side."""
+    """A dolly beside people who travel, as far as they do; else across the view, to either side."""
     way = scene.anchor(view.scale, span.end) - scene.anchor(view.scale, span.start)
     length = float(np.hypot(way[0], way[1]))
     if length > TRAVELLED:

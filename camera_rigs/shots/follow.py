@@ -13,8 +13,7 @@ from camera_rigs.smoothing import at, smooth
 from camera_rigs.spherical import Array, spherical_to_cartesian
 
 LOOK_AHEAD: Range = (0.2, 0.5)
-"""Range [s] of the look-ahead: the room in front of a walker that operators leave, a quarter of a metre or
-more."""
+"""Range [s] of the look-ahead: operators leave a walker a quarter of a metre of room in front, or more."""
 
 MAX_LEAD = 0.5
 """Furthest lead [m] before the anchor, so that a runner stays in the view."""

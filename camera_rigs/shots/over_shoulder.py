@@ -41,8 +41,7 @@ class Shoulder:
 
 
 def plan_over_shoulder(scene: Scene, span: Span, view: View, *, shoulder: Shoulder) -> Draft:
-    """A shot that travels from `view` to the place at `shoulder` and keeps it, looking at the other
-    person's neck."""
+    """From `view` to the place at `shoulder` and stay there, looking at the other person's neck."""
     check_pair(scene)
     frames = span.frames
     anchor = scene.anchor(view.scale, frames)

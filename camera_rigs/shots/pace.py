@@ -9,8 +9,7 @@ from camera_rigs.spherical import Array
 Range = tuple[float, float]
 
 RIG_SPEED = 1.5
-"""Fastest own movement [m/s] that a planner asks of the camera: a brisk walk with a Steadicam or on a
-dolly."""
+"""Fastest own movement [m/s] that a planner asks of the camera: a brisk walk with a Steadicam or a dolly."""
 
 ANGULAR_SPEED: Range = (np.radians(8.0), np.radians(20.0))
 """Mean |Δφ| per second [rad/s] of arcs: 0.4 to 1.1 m/s at 3 m, a visible but unhurried movement."""
@@ -30,25 +29,30 @@ def draw(rng: np.random.Generator, limits: Range) -> float:
     return float(rng.uniform(*limits))
 
 
-def radial_reach(span: Span, count: int, fps: float) -> float:
-    """The largest change of radius [m] between two of `count` + 1 keyframes within `RIG_SPEED`.
-
-    The smootherstep between several keyframes has a top speed of 15/8 of its mean.
-    """
-    if count == 1:
-        return span.within(RIG_SPEED, fps)
-    return RIG_SPEED * span.length / count / fps / 1.875
+def turning_times(span: Span, count: int) -> Array:
+    """The times (count + 1,) of keyframes that divide a movement over the span into equal parts."""
+    return span.times(np.linspace(0.0, 1.0, count + 1))
 
 
 def radial(span: Span, radii: Array, frames: Array) -> Array:
-    """The radius [m] at `frames` of a camera that runs through `radii` (n + 1,) in equal times.
+    """The radius [m] at `frames` of a camera that runs through `radii` (n + 1,) at `turning_times`.
 
     From one radius to another it runs evenly, with the cushions of the span; at each of several it turns.
     """
     if len(radii) == 2:
         even: Array = radii[0] + (radii[1] - radii[0]) * span.progress(frames)
         return even
-    return through(span.start + span.length * np.linspace(0.0, 1.0, len(radii)), radii, frames)
+    return through(turning_times(span, len(radii) - 1), radii, frames)
+
+
+def radial_reach(span: Span, count: int, fps: float) -> float:
+    """The largest change of radius [m] between neighbours of `count` + 1 keyframes within `RIG_SPEED`.
+
+    The smootherstep between several keyframes has a top speed of 15/8 of its mean.
+    """
+    if count == 1:
+        return span.within(RIG_SPEED, fps)
+    return RIG_SPEED * float(np.diff(turning_times(span, count)).min()) / fps / 1.875
 
 
 def random_fracs(
@@ -61,8 +65,7 @@ def random_fracs(
     count = max(1, round(span.length / scene.fps / PUSH_PULL_SECONDS))
     reach = radial_reach(span, count, scene.fps) * calm
     r, fracs = view.r, []
-    for index in range(count):
-        time = span.start + (index + 1) * span.length / count
+    for time in turning_times(span, count)[1:]:
         wanted = draw(rng, (view.scale.frac_min, view.scale.frac_max))
         goal, _ = scene.framing(time, wanted, view.theta, view.scale, view.focal)
         r = float(np.clip(goal, r - reach, r + reach))

@@ -10,7 +10,7 @@ import numpy as np
 from camera_rigs.errors import PlanError
 from camera_rigs.scene import Scene, Span, View
 from camera_rigs.shot import Draft, Move, Parameter, keyframe_at, record
-from camera_rigs.shots.pace import MIN_CHANGE, PULL_ROOM, RIG_SPEED, draw, radial, random_fracs
+from camera_rigs.shots.pace import MIN_CHANGE, PULL_ROOM, RIG_SPEED, draw, radial, random_fracs, turning_times
 from camera_rigs.smoothing import at
 from camera_rigs.spherical import spherical_to_cartesian
 
@@ -26,14 +26,14 @@ def plan_pull(scene: Scene, span: Span, view: View, *, frac: float) -> Draft:
 
 
 def plan_push_pull(scene: Scene, span: Span, view: View, *, fracs: Sequence[float]) -> Draft:
-    """A push and pull through `fracs` at times equally spaced after the first frame."""
+    """A push and pull through `fracs` at equal parts of the span."""
     return _plan(scene, span, view, fracs, "push-pull")
 
 
 def _plan(scene: Scene, span: Span, view: View, fracs: Sequence[float], kind: str) -> Draft:
     """The camera runs through the radii of `fracs`, its direction from the anchor fixed in the world."""
     heading = float(at(scene.subject.azimuth, span.start))
-    times = span.start + span.length * np.linspace(0.0, 1.0, len(fracs) + 1)
+    times = turning_times(span, len(fracs))
     framed = [
         scene.framing(time, frac, view.theta, view.scale, view.focal)
         for time, frac in zip(times[1:], fracs, strict=True)
@@ -59,7 +59,7 @@ def _plan(scene: Scene, span: Span, view: View, fracs: Sequence[float], kind: st
     )
     parameters: dict[str, Parameter] = {
         "radius": view.r,
-        "fracs": " ".join(f"{frac:.3f}" for _, frac in framed),
+        "fracs": [frac for _, frac in framed],
         "theta": view.theta,
         "phi": view.phi,
     }

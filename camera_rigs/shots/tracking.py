@@ -17,12 +17,10 @@ from camera_rigs.spherical import Array, spherical_to_cartesian
 from camera_rigs.subject import SubjectTrack
 
 LAMBDA_OVERLAP = 0.5
-"""λ_overlap: half of the box left behind is about one step of a walk, the rhythm in which an operator
-corrects."""
+"""λ_overlap: half of the box is left behind about once a step, as often as an operator corrects."""
 
 MIN_KEYFRAME_SECONDS = 0.5
-"""Least time [s] between keyframes: a runner leaves the box in a tenth of a second, no operator corrects so
-fast."""
+"""Least time [s] between keyframes: a runner leaves the box faster than an operator corrects."""
 
 MAX_TURN = np.radians(30.0)
 """Fastest turn [rad/s] of the camera about the people while it follows the facing."""
@@ -107,8 +105,7 @@ def min_keyframe_gap(fps: float) -> int:
 
 
 def departure(subject: SubjectTrack, last: int, begin: int, end: int, lambda_overlap: float) -> int | None:
-    """First frame from `begin` to `end` whose box overlaps that of `last` by less than λ; None if there is
-    none."""
+    """First frame from `begin` to `end` whose box overlaps that of `last` by less than λ, or None."""
     block = 16
     while begin <= end:
         stop = min(begin + block, end + 1)
@@ -120,8 +117,7 @@ def departure(subject: SubjectTrack, last: int, begin: int, end: int, lambda_ove
 
 
 def box_overlap(subject: SubjectTrack, last: int, begin: int, stop: int) -> Array:
-    """Intersection over union (n,) of the boxes of frames `begin` … `stop` − 1 with the box of frame
-    `last`."""
+    """Intersection over union (n,) of the boxes of frames `begin` … `stop` − 1 with that of `last`."""
     low = np.maximum(subject.box_min[begin:stop], subject.box_min[last])
     high = np.minimum(subject.box_max[begin:stop], subject.box_max[last])
     common = np.maximum(high - low, 0.0).prod(axis=-1)
