@@ -77,7 +77,9 @@ class Recipe(BaseModel):
         description="shortest and longest lens, as focal length on 36 mm film along the longer side",
     )
     quality: Literal["draft", "standard", "high"] = Field("standard", description="render settings")
-    engine: Literal["auto", "cycles"] = Field("auto", description="renderer")
+    engine: Literal["auto", "cycles", "raster"] = Field(
+        "auto", description="renderer; auto: Cycles where Blender runs, else the OpenGL raster engine"
+    )
     passes: Names = Field(("rgb", "mask", "depth"), description="what is rendered for each frame")
     image_format: Literal["jpg", "png"] = Field("jpg", description="file format of the colour frames")
     body_model: Path | None = Field(None, description="SMPL-X-schema .npz; none: the embedded CC0 body")

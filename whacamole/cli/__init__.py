@@ -6,6 +6,7 @@ from typing import Any
 
 import typer
 
+from whacamole.cli.baseline import app as baseline
 from whacamole.cli.body import body
 from whacamole.cli.doctor import doctor
 from whacamole.cli.evaluate import evaluate
@@ -28,6 +29,7 @@ app = typer.Typer(
 )
 for command in COMMANDS:
     app.command(command.__name__)(command)
+app.add_typer(baseline, name="baseline")
 
 
 def main() -> None:

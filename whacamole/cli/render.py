@@ -43,7 +43,7 @@ def render(
     quality: Annotated[
         str | None, typer.Option(help="draft, standard or high.", show_default="standard")
     ] = None,
-    engine: Annotated[str | None, typer.Option(help="auto or cycles.", show_default="auto")] = None,
+    engine: Annotated[str | None, typer.Option(help="auto, cycles or raster.", show_default="auto")] = None,
     passes: Annotated[
         str | None,
         typer.Option(

@@ -4,7 +4,6 @@ import json
 import subprocess
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -12,19 +11,22 @@ from whacamole.dataset import DatasetLayout
 from whacamole.dataset.files import write_json
 from whacamole.production.worklist import SequenceOrder
 
-__all__ = ["Listener", "Outcome", "attempt"]
+__all__ = ["AttemptError", "Listener", "attempt"]
 
 Listener = Callable[[str, dict[str, Any]], None]
 """Called with the sequence id and what its worker says."""
 
 
-@dataclass(frozen=True)
-class Outcome:
-    """How an attempt ended; ``error`` is one line, ``again`` says that another attempt may fare better."""
+class AttemptError(Exception):
+    """An attempt at a sequence failed; the message is one line.
 
-    done: bool
-    error: str = ""
-    again: bool = True
+    Attributes:
+        again: whether another attempt may fare better.
+    """
+
+    def __init__(self, message: str, *, again: bool = True) -> None:
+        super().__init__(message)
+        self.again = again
 
 
 def attempt(
@@ -34,7 +36,7 @@ def attempt(
     threads: int,
     device: str,
     running: Callable[[subprocess.Popen[str]], None],
-) -> Outcome:
+) -> None:
     """Run the worker for ``order`` to its end.
 
     Args:
@@ -42,6 +44,9 @@ def attempt(
         threads: processor threads it may use; 0 means all.
         device: "auto", "cpu" or "gpu".
         running: gets the process, so that the caller can stop it.
+
+    Raises:
+        AttemptError: the sequence is not there.
     """
     folder = DatasetLayout(order.root).work_of(order.sequence_id)
     folder.mkdir(parents=True, exist_ok=True)
@@ -67,11 +72,11 @@ def attempt(
                 listen(order.sequence_id, event)
         code = process.wait()
     if code == 0:
-        return Outcome(done=True)
+        return
     if failure is not None:
-        return Outcome(False, str(failure["error"]), bool(failure["again"]))
-    return Outcome(
-        False, f"{order.sequence_id}: its process ended with {_ending(code)}; see {log}{_last_line(log)}"
+        raise AttemptError(str(failure["error"]), again=bool(failure["again"]))
+    raise AttemptError(
+        f"{order.sequence_id}: its process ended with {_ending(code)}; see {log}{_last_line(log)}"
     )
 
 

@@ -8,8 +8,6 @@ from typing import Any, Self
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
 
-from whacamole.production.attempt import Outcome
-
 __all__ = ["ProgressDisplay"]
 
 STEPS = {"scene": "staging", "plan": "planning", "render": "rendering", "label": "labelling"}
@@ -51,13 +49,10 @@ class ProgressDisplay:
     ) -> None:
         self._bars.stop()
 
-    def begin(self, sequence_id: str, attempt: int) -> None:
+    def begin(self, sequence_id: str) -> None:
         """An attempt at a sequence starts."""
         with self._lock:
-            if sequence_id not in self._tasks:
-                self._tasks[sequence_id] = self._bars.add_task(sequence_id, total=None, note="starting")
-            note = "starting" if attempt == 0 else f"attempt {attempt + 1}"
-            self._bars.update(self._tasks[sequence_id], note=note, completed=0)
+            self._tasks[sequence_id] = self._bars.add_task(sequence_id, total=None, note="starting")
 
     def listen(self, sequence_id: str, event: dict[str, Any]) -> None:
         """Show what a worker says."""
@@ -71,17 +66,23 @@ class ProgressDisplay:
                 self._bars.update(task, advance=1)
                 self._bars.update(self._overall, note=self._pace())
 
-    def end(self, sequence_id: str, outcome: Outcome) -> None:
-        """A sequence is finished, or given up."""
+    def leave(self, sequence_id: str) -> None:
+        """An attempt has ended, well or not."""
         with self._lock:
             self._bars.remove_task(self._tasks.pop(sequence_id))
-            if outcome.done:
-                self._made += 1
-                self._bars.update(self._overall, advance=1, note=self._pace())
-                done = self._finished + self._made
-                self._console.print(f"{sequence_id}  done  ({done}/{self._sequences}, {self._pace()})")
-            else:
-                self._console.print(f"{sequence_id}  [red]failed[/]  (why: below, at the end)")
+
+    def made(self, sequence_id: str) -> None:
+        """A sequence is finished."""
+        with self._lock:
+            self._made += 1
+            self._bars.update(self._overall, advance=1, note=self._pace())
+            done = self._finished + self._made
+            self._console.print(f"{sequence_id}  done  ({done}/{self._sequences}, {self._pace()})")
+
+    def failed(self, sequence_id: str) -> None:
+        """A sequence is given up."""
+        with self._lock:
+            self._console.print(f"{sequence_id}  [red]failed[/]  (why: below, at the end)")
 
     def _pace(self) -> str:
         """Return frames a second and the time left, from the sequences made so far."""

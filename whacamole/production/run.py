@@ -4,26 +4,27 @@ import os
 import subprocess
 import threading
 import time
-from concurrent.futures import ThreadPoolExecutor, as_completed
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+from rich.console import Console
+
+from render_jobs.farm import run_farm
+from render_jobs.probe import choose_engine
 from whacamole import __version__
 from whacamole.dataset import DatasetLayout, read_json, write_index
 from whacamole.dataset.files import write_json
 from whacamole.errors import DatasetError
-from whacamole.production.attempt import Outcome, attempt
+from whacamole.production.attempt import AttemptError, attempt
 from whacamole.production.progress import ProgressDisplay
 from whacamole.production.report import Production
 from whacamole.production.worklist import SequenceOrder, Worklist, failure_note, work_of
 from whacamole.recipe import Recipe
 
-__all__ = ["ATTEMPTS", "Production", "produce"]
-
-ATTEMPTS = 3
-"""How often a sequence is tried before it counts as failed."""
+__all__ = ["Production", "produce"]
 
 MAY_DIFFER = frozenset({"motions", "shots_per_motion", "limit", "test_fraction"})
 """What may change between two runs into one dataset: it adds sequences, but alters none."""
@@ -52,11 +53,13 @@ def produce(
         DatasetError: ``out`` holds a dataset of another recipe, or something else.
     """
     layout = DatasetLayout(out.resolve())
-    _check_recipe(layout, recipe)
-    facts = _facts(recipe)
     worklist = work_of(recipe, layout.root)
     if dry_run:
         return Production(layout.root, worklist, {}, 0.0, dry_run=True)
+    recipe = _with_engine(recipe, layout, quiet)
+    _check_recipe(layout, recipe)
+    facts = _facts(recipe)
+    worklist = work_of(recipe, layout.root)
     _open_dataset(layout, recipe)
     started = time.monotonic()
     failures = _make_all(worklist, jobs, device, quiet)
@@ -65,6 +68,24 @@ def produce(
     return Production(
         layout.root, finished, failures, time.monotonic() - started, kept=len(worklist.finished)
     )
+
+
+def _with_engine(recipe: Recipe, layout: DatasetLayout, quiet: bool) -> Recipe:
+    """Settle "auto": what the dataset was begun with, else the best engine that this machine can run.
+
+    Raises:
+        EngineError: nothing can render here.
+    """
+    if recipe.engine != "auto":
+        return recipe
+    kept = layout.root / "recipe.json"
+    if kept.exists():
+        engine, note = str(read_json(kept)["engine"]), ""
+    else:
+        engine, note = choose_engine()
+    if note and not quiet:
+        Console(stderr=True, soft_wrap=True).print(note, markup=False)
+    return Recipe.model_validate({**recipe.save_as_dict(), "engine": engine})
 
 
 @dataclass
@@ -93,37 +114,36 @@ def _make_all(worklist: Worklist, jobs: int, device: str, quiet: bool) -> dict[s
     threads = max(1, (os.cpu_count() or 1) // jobs)
     processes = _Processes()
     failures: dict[str, str] = {}
-    with ProgressDisplay(len(worklist.orders), len(worklist.orders) - len(worklist.open), quiet) as display:
+    total = len(worklist.orders)
+    with (
+        ProgressDisplay(total, total - len(worklist.open), quiet) as display,
+        ThreadPoolExecutor(jobs) as pool,
+    ):
 
-        def make(order: SequenceOrder) -> Outcome:
-            outcome = Outcome(False, "stopped")
+        def make(order: SequenceOrder) -> None:
             failure_note(order).unlink(missing_ok=True)
-            for number in range(ATTEMPTS):
-                if processes.stopped:
-                    break
-                display.begin(order.sequence_id, number)
-                outcome = attempt(
-                    order, display.listen, threads=threads, device=device, running=processes.add
-                )
-                if outcome.done or not outcome.again:
-                    break
-            if not outcome.done and not processes.stopped:
-                write_json(failure_note(order), {"error": outcome.error})
-            display.end(order.sequence_id, outcome)
-            return outcome
-
-        with ThreadPoolExecutor(jobs) as pool:
-            futures = {pool.submit(make, order): order for order in worklist.open}
+            display.begin(order.sequence_id)
             try:
-                for future in as_completed(futures):
-                    outcome = future.result()
-                    if not outcome.done:
-                        failures[futures[future].sequence_id] = outcome.error
-            except BaseException:
-                processes.stop()
-                pool.shutdown(wait=True, cancel_futures=True)
-                raise
+                attempt(order, display.listen, threads=threads, device=device, running=processes.add)
+            finally:
+                display.leave(order.sequence_id)
+
+        try:
+            for outcome in run_farm(pool, make, worklist.open, in_flight=jobs, retry=_may_help):
+                if outcome.error is None:
+                    display.made(outcome.task.sequence_id)
+                elif outcome.final:
+                    failures[outcome.task.sequence_id] = str(outcome.error)
+                    write_json(failure_note(outcome.task), {"error": str(outcome.error)})
+                    display.failed(outcome.task.sequence_id)
+        except BaseException:
+            processes.stop()
+            raise
     return failures
+
+
+def _may_help(error: BaseException) -> bool:
+    return isinstance(error, AttemptError) and error.again
 
 
 def _facts(recipe: Recipe) -> dict[str, Any]:

@@ -79,6 +79,7 @@ def _make_in(
     say("step", name="render", frames=take.num_frames)
     run_job(
         work / "job",
+        engine=recipe.engine,
         threads=threads,
         device=device,
         on_frame=lambda frame: say("frame", index=frame),
@@ -163,6 +164,7 @@ def _facts(
         "interactive": take.motion.interactive,
         "shots": [shot.kind for shot in plan.shots],
         "stage": take.stage.name,
+        "engine": order.recipe.engine,
         "passes": list(order.recipe.passes),
         "image_format": order.recipe.image_format,
         "body_model": body.name,
