@@ -84,6 +84,9 @@ class Recipe(BaseModel):
     image_format: Literal["jpg", "png"] = Field("jpg", description="file format of the colour frames")
     body_model: Path | None = Field(None, description="SMPL-X-schema .npz; none: the embedded CC0 body")
     seed: int = Field(0, ge=0, lt=2**63, description="the one seed of all choices")
+    allow_breaches: bool = Field(
+        False, description="render a sequence even where no camera was found that keeps all rules"
+    )
     test_fraction: float = Field(0.2, ge=0, le=1, description="share of the motions in the test split")
 
     @model_validator(mode="after")

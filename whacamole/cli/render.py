@@ -61,6 +61,10 @@ def render(
     limit: Annotated[
         int | None, typer.Option(help="Make at most so many sequences.", show_default="no limit")
     ] = None,
+    allow_breaches: Annotated[
+        bool | None,
+        typer.Option("--allow-breaches", help="Render cameras that break a rule, too.", show_default="off"),
+    ] = None,
     recipe: Annotated[
         Path | None, typer.Option(help="YAML file of these options; what is typed here goes over it.")
     ] = None,
@@ -85,6 +89,7 @@ def render(
         "people": people, "stages": stages,
         "size": size, "fps": fps, "quality": quality, "engine": engine, "passes": passes,
         "image_format": image_format, "body_model": body_model, "seed": seed, "limit": limit,
+        "allow_breaches": allow_breaches,
     }  # fmt: skip
     overrides: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
     result = produce(

@@ -26,7 +26,7 @@ from whacamole.recipe import Recipe
 
 __all__ = ["Production", "produce"]
 
-MAY_DIFFER = frozenset({"motions", "shots_per_motion", "limit", "test_fraction"})
+MAY_DIFFER = frozenset({"motions", "shots_per_motion", "limit", "test_fraction", "allow_breaches"})
 """What may change between two runs into one dataset: it adds sequences, but alters none."""
 
 

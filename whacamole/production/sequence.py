@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from camera_rigs import Plan
+from camera_rigs import Finding, Plan, PlanError
 from render_jobs import RenderJob, quality_preset, run_job
 from whacamole.body import BodyModel
 from whacamole.dataset import DatasetLayout, Sequence, SequenceLayout, write_summary
@@ -74,6 +74,8 @@ def _make_in(
     take = take_of(order, textures=work / "textures")
     say("step", name="plan")
     plan = plan_camera(take, recipe, order.shot_index)
+    if plan.findings and not recipe.allow_breaches:
+        raise PlanError(_breach(order, plan.findings[0]))
     job = render_job(take, plan, order)
     job.save(work / "job")
     say("step", name="render", frames=take.num_frames)
@@ -122,6 +124,15 @@ def take_of(order: SequenceOrder, *, textures: Path | None) -> Take:
         )
     except TakeError as error:
         raise TakeError(f"{motion.path}: {error}") from error
+
+
+def _breach(order: SequenceOrder, finding: Finding) -> str:
+    measured = (
+        f"{finding.rule} at frame {finding.frame}, {finding.value:.3g} where the limit is {finding.limit:.3g}"
+    )
+    return (
+        f"{order.sequence_id}: no camera keeps all rules ({measured}); try other --shots or --allow-breaches"
+    )
 
 
 def render_job(take: Take, plan: Plan, order: SequenceOrder) -> RenderJob:
