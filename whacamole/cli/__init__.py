@@ -8,6 +8,7 @@ import typer
 
 from whacamole.cli.baseline import app as baseline
 from whacamole.cli.body import body
+from whacamole.cli.check import check
 from whacamole.cli.doctor import doctor
 from whacamole.cli.evaluate import evaluate
 from whacamole.cli.plan import plan
@@ -17,7 +18,7 @@ from whacamole.cli.status import status
 
 __all__ = ["app", "main"]
 
-COMMANDS: tuple[Callable[..., Any], ...] = (render, plan, status, evaluate, body, recipe, doctor)
+COMMANDS: tuple[Callable[..., Any], ...] = (render, plan, check, status, evaluate, body, recipe, doctor)
 
 app = typer.Typer(
     name="whacamole",

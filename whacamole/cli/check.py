@@ -1,0 +1,45 @@
+"""``whacamole check``: do the labels of a dataset land on its pixels?"""
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+__all__ = ["check"]
+
+
+def check(
+    dataset: Annotated[Path, typer.Argument(help="Folder of the dataset.")],
+    checksums: Annotated[
+        bool, typer.Option(help="Compare every file with the checksum noted when it was written.")
+    ] = True,
+    body_model: Annotated[
+        Path | None,
+        typer.Option(
+            help="The SMPL-X .npz that the dataset was made with.", show_default="the embedded CC0 body"
+        ),
+    ] = None,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print findings only.")] = False,
+    json_output: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
+) -> None:
+    """Derive the labels again from each other and hold them against the pixels; exit 1 on a finding."""
+    from rich.console import Console
+
+    from whacamole.body import BodyModel
+    from whacamole.check import check_dataset
+
+    model = None if body_model is None else BodyModel.load(body_model)
+    with Console(stderr=True, quiet=quiet or json_output).status("auditing") as status:
+        found = check_dataset(
+            dataset,
+            checksums=checksums,
+            body_model=model,
+            on_sequence=lambda sequence_id: status.update(f"auditing {sequence_id}"),
+        )
+    if json_output:
+        typer.echo(json.dumps(found.to_json(), indent=1))
+    else:
+        lines = found.lines()
+        typer.echo("\n".join(lines[:-1] if quiet else lines), nl=bool(lines[:-1]) or not quiet)
+    raise typer.Exit(0 if found.ok else 1)
