@@ -16,6 +16,7 @@ import psutil
 
 from render_jobs import system_libraries
 from render_jobs.probe import TRIES, Probe, probe
+from render_jobs.protocol import ENGINES
 
 __all__ = ["Check", "can_render", "diagnose", "report_as_dict"]
 
@@ -24,9 +25,6 @@ MIN_FREE_MEMORY = 2 * 2**30
 
 MIN_FREE_DISK = 2 * 2**30
 """A 640x360 sequence of 240 frames with RGB, mask and depth takes some 0.2 GiB. Bytes."""
-
-MAIN_ENGINE = "cycles"
-"""The engine that needs neither a GPU nor OpenGL; without it nothing can be rendered."""
 
 _CONSTRAINED = 'pip install --constraint constraints.txt "whacamole"'
 
@@ -139,11 +137,12 @@ def _packages() -> Check:
 
 
 def _blender_libraries() -> Check:
+    """What is missing here, the engines below feel: they say whether anything can render."""
     missing = system_libraries.missing_for_blender()
     if not missing:
         return Check("system libraries", "ok", "all that Blender's module links to")
     remedy = system_libraries.install_line(missing)
-    return Check("system libraries", "error", f"missing: {', '.join(missing)}", remedy)
+    return Check("system libraries", "warning", f"missing: {', '.join(missing)}", remedy)
 
 
 def _opengl_libraries() -> Check:
@@ -155,16 +154,20 @@ def _opengl_libraries() -> Check:
 
 
 def _engines() -> list[Check]:
-    """One check an engine, all tried at the same time, each in a process of its own."""
+    """One check an engine, all tried at the same time, each in a process of its own.
+
+    One that fails is a warning while another can render the job, else an error.
+    """
     with ThreadPoolExecutor(len(TRIES)) as pool:
-        return [_engine(outcome) for outcome in pool.map(probe, TRIES)]
+        outcomes = list(pool.map(probe, TRIES))
+    can_render = any(outcome.works for outcome in outcomes if outcome.name in ENGINES)
+    return [_engine(outcome, needed=outcome.name in ENGINES and not can_render) for outcome in outcomes]
 
 
-def _engine(outcome: Probe) -> Check:
+def _engine(outcome: Probe, *, needed: bool) -> Check:
     if outcome.works:
         return Check(outcome.name, "ok", outcome.found)
-    state: Literal["error", "warning"] = "error" if outcome.name == MAIN_ENGINE else "warning"
-    return Check(outcome.name, state, outcome.found, outcome.remedy)
+    return Check(outcome.name, "error" if needed else "warning", outcome.found, outcome.remedy)
 
 
 def _cores() -> Check:

@@ -54,10 +54,6 @@ def _lacks_scipy(patch: Patch) -> None:
     patch.setattr(importlib.metadata, "version", version)
 
 
-def _lacks_x11(patch: Patch) -> None:
-    patch.setattr(system_libraries, "missing_for_blender", lambda: ["libX11.so.6"])
-
-
 @pytest.mark.parametrize(
     ("fault", "look", "remedy"),
     [
@@ -66,7 +62,6 @@ def _lacks_x11(patch: Patch) -> None:
         (_is_arm, diagnosis._platform, "x86_64"),
         (_is_old, diagnosis._platform, "glibc 2.28"),
         (_lacks_scipy, diagnosis._packages, "pip install scipy"),
-        (_lacks_x11, diagnosis._blender_libraries, "libx11-6"),
     ],
 )
 def test_what_keeps_a_machine_from_rendering_is_an_error_with_a_remedy(
@@ -79,20 +74,41 @@ def test_what_keeps_a_machine_from_rendering_is_an_error_with_a_remedy(
     assert not can_render([check])
 
 
-def test_missing_opengl_is_a_warning(monkeypatch: Patch) -> None:
-    monkeypatch.setattr(system_libraries, "missing_for_opengl", lambda: ["libEGL.so.1"])
-    check = diagnosis._opengl_libraries()
+@pytest.mark.parametrize(
+    ("search", "look", "missing", "package"),
+    [
+        ("missing_for_blender", diagnosis._blender_libraries, "libX11.so.6", "libx11-6"),
+        ("missing_for_opengl", diagnosis._opengl_libraries, "libEGL.so.1", "libegl1"),
+    ],
+)
+def test_missing_libraries_are_named_with_their_packages(
+    search: str, look: Callable[[], Check], missing: str, package: str, monkeypatch: Patch
+) -> None:
+    monkeypatch.setattr(system_libraries, search, lambda: [missing])
+    check = look()
     assert check.state == "warning"
-    assert "libegl1" in check.remedy
-    assert can_render([check])
+    assert missing in check.found
+    assert package in check.remedy
 
 
-@pytest.mark.parametrize(("engine", "state"), [("cycles", "error"), ("workbench", "warning")])
-def test_only_the_main_engine_is_needed(engine: str, state: str, monkeypatch: Patch) -> None:
-    monkeypatch.setattr(diagnosis, "probe", lambda name: Probe(name, name != engine, "seen", "mend it"))
-    checks = {check.name: check for check in diagnosis._engines()}
-    assert (checks[engine].state, checks[engine].remedy) == (state, "mend it")
-    assert {check.state for name, check in checks.items() if name != engine} == {"ok"}
+@pytest.mark.parametrize(
+    ("broken", "states"),
+    [
+        ((), {"cycles": "ok", "raster": "ok", "workbench": "ok"}),
+        (("workbench",), {"cycles": "ok", "raster": "ok", "workbench": "warning"}),
+        (("cycles", "workbench"), {"cycles": "warning", "raster": "ok", "workbench": "warning"}),
+        (("cycles", "raster"), {"cycles": "error", "raster": "error", "workbench": "ok"}),
+    ],
+)
+def test_one_engine_that_can_render_is_enough(
+    broken: tuple[str, ...], states: dict[str, str], monkeypatch: Patch
+) -> None:
+    monkeypatch.setattr(
+        diagnosis, "probe", lambda name: Probe(name, name not in broken, "seen", "mend it" * (name in broken))
+    )
+    checks = diagnosis._engines()
+    assert {check.name: check.state for check in checks} == states
+    assert {check.name for check in checks if check.remedy == "mend it"} == set(broken)
 
 
 @pytest.mark.blender
