@@ -120,18 +120,20 @@ def evaluate(
 
     for sequence_id, outcomes in _in_order(work, ids, jobs):
         for name, outcome, used in outcomes:
-            method = methods[name]
-            if isinstance(outcome, SequenceScore):
-                method.sequences[sequence_id] = outcome
-                known = {word for word in method.ground_truth_used.split(",") if word}
-                method.ground_truth_used = ",".join(
-                    sorted(known | {word for word in used.split(",") if word})
-                )
-            else:
-                method.failures[sequence_id] = outcome
+            _record(methods[name], sequence_id, outcome, used)
             if progress is not None:
                 progress(name, sequence_id, outcome)
     return Result(chosen, source.name, split, tuple(ids), tuple(methods.values()))
+
+
+def _record(method: MethodResult, sequence_id: str, outcome: SequenceScore | str, used: str) -> None:
+    """Put the scores of a sequence, or why there are none, where they belong."""
+    if isinstance(outcome, str):
+        method.failures[sequence_id] = outcome
+        return
+    method.sequences[sequence_id] = outcome
+    words = {*method.ground_truth_used.split(","), *used.split(",")} - {""}
+    method.ground_truth_used = ",".join(sorted(words))
 
 
 def score_recording(

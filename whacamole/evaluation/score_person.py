@@ -46,7 +46,7 @@ def score_person(
             score.put(key, pair.index, pair.rows, values)
     _camera_frame(pair, protocol, fps, score)
     _world(pair, protocol, fps, score)
-    if surface is not None and surface.feet is not None:
+    if surface is not None:
         _feet(pair, protocol, fps, surface.feet, score)
 
 

@@ -1,6 +1,6 @@
 """Vertex errors of one person, a block of frames at a time."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -34,23 +34,23 @@ class VertexOptions:
     regressor: FloatArray | None = None
 
 
-@dataclass(eq=False)
+@dataclass(frozen=True, eq=False)
 class VertexScores:
-    """Per-frame errors by metric key (F,), and what other metrics need of the vertices.
+    """Per-frame errors, and what other metrics need of the vertices.
 
     Attributes:
-        errors: metric key → (F,).
+        errors: metric key → (F,) [mm].
         feet: predicted and true foot points (F, 4, 3) [m], local.
         regressed: true and predicted regressed joints (F, 14, 3) [m], local, or ``None``.
     """
 
-    errors: dict[str, FloatArray] = field(default_factory=dict)
-    feet: tuple[FloatArray, FloatArray] | None = None
-    regressed: tuple[FloatArray, FloatArray] | None = None
+    errors: dict[str, FloatArray]
+    feet: tuple[FloatArray, FloatArray]
+    regressed: tuple[FloatArray, FloatArray] | None
 
 
 def score_vertices(pair: Pair, protocol: Protocol, options: VertexOptions) -> VertexScores:
-    """Pose both bodies and compare their surfaces.
+    """Pose both bodies, a block of frames at a time, and compare their surfaces.
 
     All happens in the true body's own frame, pelvis at the origin and root not turned: distances do not
     change, and the true vertices need no transform.
@@ -58,47 +58,66 @@ def score_vertices(pair: Pair, protocol: Protocol, options: VertexOptions) -> Ve
     Raises:
         EvaluationError: the meshes differ and no mapping fits, or a joint regressor is wanted and not given.
     """
-    bodies = _bodies(pair)
-    moves = _moves(pair)
-    F = len(pair.rows)
-    keys = ["pa_pve"] + (["pve", "t_pve", "pve_hands", "pve_face"] if moves else [])
-    scores = VertexScores({key: np.full(F, np.nan) for key in keys})
-    feet = np.zeros((2, F, 4, 3))
-    wants_regressed = protocol.joints == "h36m14"
-    regressed = np.zeros((2, F, len(H36M14), 3)) if wants_regressed else None
-    parts = _parts(bodies[1])
-    frames = max(1, BLOCK // max(len(body.weights) for body in bodies))
-    for start in range(0, F, frames):
-        at = np.arange(start, min(start + frames, F))
-        raw = (
-            pair.prediction.local_vertices(pair.at_prediction[at]),
-            pair.truth.local_vertices(pair.at_truth[at]),
-        )
-        feet[0, at], feet[1, at] = (v[:, body.feet] for v, body in zip(raw, bodies, strict=True))
-        ours, theirs = raw[1], _mapped(raw[0], bodies, options)
-        if regressed is not None:
-            for side, vertices in enumerate((theirs, ours)):
-                regressed[side, at] = _regress(vertices, options)
-        joints = [joints[at] for joints in pair.local_joints]
-        sets = (regressed[0, at], regressed[1, at]) if regressed is not None else _sets(pair, joints)
+    surfaces = _Surfaces(pair, protocol, options)
+    frames = max(1, BLOCK // max(len(body.weights) for body in surfaces.bodies))
+    rows = np.arange(len(pair.rows))
+    blocks = [surfaces.compare(rows[start : start + frames]) for start in range(0, len(rows), frames)]
+    joined = {key: np.concatenate([block[key] for block in blocks]) for key in blocks[0]}
+    feet = joined.pop("feet"), joined.pop("feet_truth")
+    regressed = None
+    if "regressed" in joined:
+        regressed = joined.pop("regressed_truth"), joined.pop("regressed")
+    return VertexScores(joined, feet, regressed)
+
+
+class _Surfaces:
+    """The two bodies of a pair and what stays the same for all blocks."""
+
+    def __init__(self, pair: Pair, protocol: Protocol, options: VertexOptions) -> None:
+        self.pair, self.protocol, self.options = pair, protocol, options
+        self.bodies = _bodies(pair)
+        self._moves = _moves(pair)
+        self._parts = _parts(self.bodies[1])
+
+    def compare(self, at: IntArray) -> dict[str, FloatArray]:
+        """Errors at some rows, with "feet", "feet_truth" and, if wanted, "regressed", "regressed_truth"."""
+        pair, bodies = self.pair, self.bodies
+        raw = pair.prediction.local_vertices(pair.at_prediction[at])
+        ours = pair.truth.local_vertices(pair.at_truth[at])
+        theirs = _mapped(raw, bodies, self.options)
+        found: dict[str, FloatArray] = {"feet": raw[:, bodies[0].feet], "feet_truth": ours[:, bodies[1].feet]}
+        joints = [both[at] for both in pair.local_joints]
+        sets = _sets(pair, joints)
+        if self.protocol.joints == "h36m14":
+            sets = _regress(theirs, self.options), _regress(ours, self.options)
+            found |= {"regressed": sets[0], "regressed_truth": sets[1]}
         scored = bodies[1].scored
-        scores.errors["pa_pve"][at] = _procrustes(theirs[:, scored], ours[:, scored], sets, protocol)
-        if moves:
-            turn, shift = moves[0][at], moves[1][at]
-            moved = _turned(theirs, turn)
-            placed_joints = _turned(joints[0], turn)
-            root = root_of(_turned(sets[0], turn), pair.joint_set, protocol.root)
-            gap = root - root_of(sets[1], pair.joint_set, protocol.root)
-            target = ours[:, scored]
-            for key, by in (("t_pve", shift), ("pve", -gap)):
-                scores.errors[key][at] = point_error(
-                    moved[:, scored] + by[:, None].astype(np.float32), target
-                )
-            for key, regions in parts.items():
-                scores.errors[key][at] = _part_error(moved, ours, placed_joints, joints[1], regions)
-    scores.feet = feet[0], feet[1]
-    scores.regressed = None if regressed is None else (regressed[1], regressed[0])
-    return scores
+        found["pa_pve"] = _procrustes(theirs[:, scored], ours[:, scored], sets, self.protocol)
+        if self._moves is not None:
+            found |= self._placed(theirs, ours, joints, sets, (self._moves[0][at], self._moves[1][at]))
+        return found
+
+    def _placed(
+        self,
+        theirs: Float32Array,
+        ours: Float32Array,
+        joints: list[FloatArray],
+        sets: tuple[FloatArray, FloatArray],
+        moves: tuple[FloatArray, FloatArray],
+    ) -> dict[str, FloatArray]:
+        """Errors that need both bodies in the camera's frame."""
+        turn, shift = moves
+        moved, scored = _turned(theirs, turn), self.bodies[1].scored
+        root = root_of(_turned(sets[0], turn), self.pair.joint_set, self.protocol.root)
+        gap = root - root_of(sets[1], self.pair.joint_set, self.protocol.root)
+        found = {
+            key: point_error(moved[:, scored] + by[:, None].astype(np.float32), ours[:, scored])
+            for key, by in (("t_pve", shift), ("pve", -gap))
+        }
+        placed = _turned(joints[0], turn)
+        for key, regions in self._parts.items():
+            found[key] = _part_error(moved, ours, placed, joints[1], regions)
+        return found
 
 
 def _bodies(pair: Pair) -> tuple[Body, Body]:

@@ -241,13 +241,40 @@ def make_smpl(seed: int, joints: int = 24, vertices: int = 200) -> Arrays:
     }
 
 
+SMPLX_VERTICES = 400
+
+
+def make_smplx(seed: int) -> Arrays:
+    """A model in the SMPL-X schema on some of the embedded body's vertices, small so that it is quick."""
+    rng = np.random.default_rng(seed)
+    body = BodyModel.embedded()
+    kept = np.linspace(0, body.num_vertices - 1, SMPLX_VERTICES).astype(int)
+    regressor = np.zeros((55, SMPLX_VERTICES))
+    for row, place in enumerate(body.rest_joints(np.zeros(10))):
+        regressor[row, np.argsort(np.linalg.norm(body.v_template[kept] - place, axis=1))[:5]] = 0.2
+    parents = np.array([2**32 - 1, *body.parents[1:]])
+    return {
+        "v_template": body.v_template[kept],
+        "f": np.zeros((1, 3), dtype=np.uint32),
+        "shapedirs": np.concatenate([body.arrays.shapedirs, body.arrays.expression_dirs], axis=2)[kept],
+        "posedirs": 1e-3 * rng.normal(size=(SMPLX_VERTICES, 3, 486)),
+        "J_regressor": regressor,
+        "weights": body.weights[kept],
+        "kintree_table": np.stack([parents, np.arange(55)]),
+        "hands_componentsl": rng.normal(size=(45, 45)),
+        "hands_componentsr": rng.normal(size=(45, 45)),
+        "hands_meanl": 0.1 * rng.normal(size=45),
+        "hands_meanr": 0.1 * rng.normal(size=45),
+    }
+
+
 @pytest.fixture(scope="session")
 def models(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder of body model files: made-up SMPL and SMPL-H, and the embedded body as SMPL-X."""
+    """A folder of body model files: made-up SMPL, SMPL-H and SMPL-X."""
     folder = tmp_path_factory.mktemp("models")
     for gender, seed in {"NEUTRAL": 0, "MALE": 1, "FEMALE": 2}.items():
         np.savez(folder / f"SMPL_{gender}.npz", **make_smpl(seed))
     np.savez(folder / "SMPLH_NEUTRAL.npz", **make_smpl(3, joints=52))
-    for gender in ("NEUTRAL", "MALE"):
-        BodyModel.embedded().export_full(folder / f"SMPLX_{gender}.npz")
+    for gender, seed in {"NEUTRAL": 4, "MALE": 5}.items():
+        np.savez(folder / f"SMPLX_{gender}.npz", **make_smplx(seed))
     return folder

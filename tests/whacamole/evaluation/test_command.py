@@ -67,8 +67,9 @@ def test_two_methods_every_output_and_a_saved_result(run, dataset, predictions, 
     exact = make["predictions"](tmp_path / "exact", {s.id: make["prediction"](s) for s in scenes})
     done = run(
         "--data", dataset, "--pred", predictions, "--pred", f"oracle={exact}", "--vertices", "200",
-        "--tables", "all", "--style", "markdown", "--html", tmp_path / "r.html", "--plots", tmp_path / "plots",
-        "--json", tmp_path / "r.json", "--save", tmp_path / "r.npz", "--jobs", "2",
+        "--tables", "all", "--style", "markdown", "--html", tmp_path / "r.html",
+        "--plots", tmp_path / "plots", "--json", tmp_path / "r.json", "--save", tmp_path / "r.npz",
+        "--jobs", "2",
     )  # fmt: skip
     assert done.exit_code == 0, done.output
     assert "**oracle minus noisy**" in done.stdout

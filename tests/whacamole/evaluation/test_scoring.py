@@ -276,34 +276,6 @@ def test_labelled_contact_is_compared_by_the_names_of_parts(truth, source):
     assert any("no part alike" in note for note in score.notes)
 
 
-def test_a_sample_of_vertices_estimates_all(truth, source):
-    prediction = source(noise=0.03)
-    every = score_recording(truth, prediction, "whac", Bodies())
-    some = score_recording(truth, prediction, "whac", Bodies(vertices=1000))
-    for key in ("pve", "pa_pve", "t_pve"):
-        assert value(some, key) == pytest.approx(value(every, key), rel=0.01)
-    for key in ("mpjpe", "w_mpjpe", "foot_sliding"):
-        assert value(some, key) == pytest.approx(value(every, key), rel=1e-4)
-
-
-def test_pve_is_the_mean_over_the_posed_meshes(truth, source, scenes):
-    """Another way to the same numbers: both bodies posed by the body model in the camera's frame."""
-    from whacamole.body import BodyModel, BodyParams
-
-    model, prediction = BodyModel.embedded(), source(noise=0.03)
-    score = score_recording(truth, prediction, "whac", Bodies())
-    guess = prediction.people[0]
-    ours = model.pose(BodyParams.from_arrays(scenes[0].people, "camera", 0))
-    rest = (guess.left_hand_pose, guess.right_hand_pose, guess.jaw_pose, guess.leye_pose, guess.reye_pose)
-    seen = (guess.camera.orient, guess.camera.transl, guess.body_pose)
-    theirs = model.pose(BodyParams(guess.betas, guess.expression, *seen, *rest))
-    t_pve = np.linalg.norm(theirs.vertices - ours.vertices, axis=-1).mean(axis=1) * 1000
-    centred = [posed.vertices - posed.joints[:, :1] for posed in (theirs, ours)]
-    pve = np.linalg.norm(centred[0] - centred[1], axis=-1).mean(axis=1) * 1000
-    np.testing.assert_allclose(score.values["t_pve"][0], t_pve, rtol=1e-4, atol=1e-2)
-    np.testing.assert_allclose(score.values["pve"][0], pve, rtol=1e-4, atol=1e-2)
-
-
 def test_smoothing_and_mean_shapes_are_of_the_prediction_only(truth, source):
     prediction = source(noise=0.02)
     rough = score_recording(truth, prediction, replace(PROTOCOLS["whac"], smooth_root=0.0), NONE)

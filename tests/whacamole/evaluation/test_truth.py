@@ -3,7 +3,6 @@
 import csv
 import json
 import pickle
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -308,25 +307,3 @@ def test_labels_that_are_broken_are_named(dataset, tmp_path):
     (root / "splits" / "test.txt").write_text("", encoding="utf-8")
     with pytest.raises(EvaluationError, match="has no sequence"):
         open_truth(root).ids("test")
-
-
-def test_a_joint_regressor_gives_the_14_joints(emdb, models, tmp_path_factory):
-    root, _ = emdb
-    truth = open_truth(root).read("P0_09_walk")
-    path = tmp_path_factory.mktemp("regressor") / "J_regressor_h36m.npy"
-    rows = np.random.default_rng(0).random((17, 200))
-    np.save(path, rows / rows.sum(axis=1, keepdims=True))
-    from whacamole.evaluation import PROTOCOLS
-
-    protocol = replace(PROTOCOLS["wham"], joints="h36m14")
-    moved = replace(truth.people[0], betas=truth.people[0].betas + 0.5)
-    other = replace(truth, people=(moved,))
-    score = score_recording(truth, other, protocol, Bodies(files=(models,), joint_regressor=path))
-    plain = score_recording(truth, other, "wham", Bodies(files=(models,)))
-    assert pooled([score], "mpjpe") > 0
-    assert pooled([score], "mpjpe") != pooled([plain], "mpjpe")
-    assert np.isfinite(pooled([score], "wa_mpjpe"))
-    assert "jitter" in score.values
-    without = score_recording(truth, other, protocol, Bodies(files=(models,)))
-    assert any("--joint-regressor" in note for note in without.notes)
-    assert "mpjpe" not in without.values

@@ -33,82 +33,81 @@ class Line:
 
 
 @dataclass(frozen=True)
-class Frame:
-    """Size and place of a chart [px]."""
+class _Axes:
+    """A box of the page and the ranges it shows."""
 
+    x: tuple[float, float]
+    y: tuple[float, float]
     width: int = 460
     height: int = 320
     left: int = 54
-    right: int = 12
+    right: int = 448
     top: int = 26
-    bottom: int = 40
+    bottom: int = 280
+
+    def to_x(self, value: Curve) -> Curve:
+        """Pixels from the left of values."""
+        return self.left + (value - self.x[0]) / (self.x[1] - self.x[0]) * (self.right - self.left)
+
+    def to_y(self, value: Curve) -> Curve:
+        """Pixels from the top of values."""
+        return self.bottom - (value - self.y[0]) / (self.y[1] - self.y[0]) * (self.bottom - self.top)
+
+    def drawn(self, x_label: str, y_label: str) -> list[str]:
+        """Grid, numbers and labels."""
+        parts = []
+        for value in ticks(*self.x):
+            x = float(self.to_x(np.array(value)))
+            parts.append(f'<path d="M{x:.1f} {self.top}V{self.bottom}" stroke="#e4e4e4"/>')
+            parts.append(f'<text x="{x:.1f}" y="{self.bottom + 14}" text-anchor="middle">{value:g}</text>')
+        for value in ticks(*self.y):
+            y = float(self.to_y(np.array(value)))
+            parts.append(f'<path d="M{self.left} {y:.1f}H{self.right}" stroke="#e4e4e4"/>')
+            parts.append(f'<text x="{self.left - 5}" y="{y + 4:.1f}" text-anchor="end">{value:g}</text>')
+        across, middle = (self.left + self.right) / 2, (self.top + self.bottom) / 2
+        below = f'<text x="{across:.0f}" y="{self.height - 8}" text-anchor="middle">'
+        beside = f'<text transform="translate(13 {middle:.0f}) rotate(-90)" text-anchor="middle">'
+        return [*parts, f"{below}{escape(x_label)}</text>", f"{beside}{escape(y_label)}</text>"]
 
 
-def chart(
-    lines: Sequence[Line],
-    title: str,
-    x_label: str,
-    y_label: str,
-    *,
-    equal: bool = False,
-    frame: Frame | None = None,
-) -> str:
+def chart(lines: Sequence[Line], title: str, x_label: str, y_label: str, *, equal: bool = False) -> str:
     """Draw lines over labelled axes.
 
     Args:
+        lines: the curves; later ones lie on top.
+        title, x_label, y_label: texts.
         equal: one unit is as long on both axes, as a map needs.
     """
-    box = frame or Frame()
-    plot_width, plot_height = box.width - box.left - box.right, box.height - box.top - box.bottom
-    x_range, y_range = _range([line.x for line in lines]), _range([line.y for line in lines])
+    axes = _Axes(_range([line.x for line in lines]), _range([line.y for line in lines]))
     if equal:
-        x_range, y_range = _equal(x_range, y_range, plot_width / plot_height)
-
-    def to_x(value: float) -> float:
-        return box.left + (value - x_range[0]) / (x_range[1] - x_range[0]) * plot_width
-
-    def to_y(value: float) -> float:
-        return box.top + plot_height - (value - y_range[0]) / (y_range[1] - y_range[0]) * plot_height
-
+        x, y = _equal(axes.x, axes.y, (axes.right - axes.left) / (axes.bottom - axes.top))
+        axes = _Axes(x, y)
     parts = [
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {box.width} {box.height}" '
-        f'width="{box.width}" height="{box.height}" font-family="sans-serif" font-size="11" '
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {axes.width} {axes.height}" '
+        f'width="{axes.width}" height="{axes.height}" font-family="sans-serif" font-size="11" '
         f'role="img" aria-label="{escape(title)}">',
-        f'<rect width="{box.width}" height="{box.height}" fill="white"/>',
-        f'<text x="{box.left}" y="16" font-size="12" font-weight="bold">{escape(title)}</text>',
+        f'<rect width="{axes.width}" height="{axes.height}" fill="white"/>',
+        f'<text x="{axes.left}" y="16" font-size="12" font-weight="bold">{escape(title)}</text>',
+        *axes.drawn(x_label, y_label),
     ]
-    bottom = box.top + plot_height
-    for value in ticks(*x_range):
-        x = to_x(value)
-        parts.append(f'<path d="M{x:.1f} {box.top}V{bottom}" stroke="#e4e4e4"/>')
-        parts.append(f'<text x="{x:.1f}" y="{bottom + 14}" text-anchor="middle">{value:g}</text>')
-    for value in ticks(*y_range):
-        y = to_y(value)
-        parts.append(f'<path d="M{box.left} {y:.1f}H{box.width - box.right}" stroke="#e4e4e4"/>')
-        parts.append(f'<text x="{box.left - 5}" y="{y + 4:.1f}" text-anchor="end">{value:g}</text>')
-    across, middle = box.left + plot_width / 2, box.top + plot_height / 2
-    below = f'<text x="{across:.0f}" y="{box.height - 8}" text-anchor="middle">'
-    beside = f'<text transform="translate(13 {middle:.0f}) rotate(-90)" text-anchor="middle">'
-    parts += [f"{below}{escape(x_label)}</text>", f"{beside}{escape(y_label)}</text>"]
     for line in lines:
-        dash = ' stroke-dasharray="5 3"' if line.dashed else ""
-        path = _path(np.array([to_x(v) for v in line.x]), np.array([to_y(v) for v in line.y]))
+        path = _path(axes.to_x(line.x), axes.to_y(line.y))
         if path:
-            parts.append(
-                f'<path d="{path}" fill="none" stroke="{line.colour}" stroke-width="{line.width:g}"{dash}/>'
-            )
-    parts += _legend(lines, box)
-    return "".join([*parts, "</svg>"])
+            stroke = f'stroke="{line.colour}" stroke-width="{line.width:g}"{_dash(line)}'
+            parts.append(f'<path d="{path}" fill="none" {stroke}/>')
+    return "".join([*parts, *_legend(lines, axes), "</svg>"])
 
 
-def _legend(lines: Sequence[Line], box: Frame) -> list[str]:
-    named = [line for line in lines if line.label]
+def _dash(line: Line) -> str:
+    return ' stroke-dasharray="5 3"' if line.dashed else ""
+
+
+def _legend(lines: Sequence[Line], axes: _Axes) -> list[str]:
     parts = []
-    for number, line in enumerate(named):
-        y = box.top + 12 + 14 * number
-        x = box.width - box.right - 8
-        dash = ' stroke-dasharray="5 3"' if line.dashed else ""
-        parts.append(f'<path d="M{x - 18} {y - 4}h18" stroke="{line.colour}" stroke-width="2"{dash}/>')
+    for number, line in enumerate(line for line in lines if line.label):
+        x, y = axes.right - 8, axes.top + 12 + 14 * number
+        stroke = f'stroke="{line.colour}" stroke-width="2"{_dash(line)}'
+        parts.append(f'<path d="M{x - 18} {y - 4}h18" {stroke}/>')
         parts.append(f'<text x="{x - 23}" y="{y}" text-anchor="end">{escape(line.label)}</text>')
     return parts
 
