@@ -45,6 +45,7 @@ def add_mesh(mesh: Mesh, material: Any, scratch: Path) -> None:
         if mesh.subdivision:
             modifier: Any = entity.modifiers.new("subdivision", "SUBSURF")
             modifier.levels = modifier.render_levels = mesh.subdivision
+            modifier.use_limit_surface = False  # the raster engine can draw these points, too
 
 
 def write_pc2(path: Path, vertices: NDArray[np.float32]) -> None:

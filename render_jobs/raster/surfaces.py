@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
+from render_jobs.raster.subdivide import subdivide
 from render_jobs.scene import Mesh
 
 Floats = NDArray[np.float32]
@@ -20,13 +21,15 @@ class Surface:
 
     Attributes:
         mesh: where it comes from.
-        corner_vertex: ``(N,)`` the mesh vertex of each vertex drawn.
+        operator: ``(V', V)`` takes the mesh's vertices to the subdivided ones; None where it is drawn as it is.
+        corner_vertex: ``(N,)`` the (subdivided) vertex behind each vertex drawn.
         uv: ``(N, 2)`` texture coordinates, v up; zero where the mesh has none.
         triangles: ``(M, 3)`` indices of vertices drawn.
-        mesh_triangles: ``(M, 3)`` the same as vertices of the mesh.
+        mesh_triangles: ``(M, 3)`` the same as (subdivided) vertices.
     """
 
     mesh: Mesh
+    operator: sparse.csr_array | None
     corner_vertex: Ints
     uv: Floats
     triangles: Ints
@@ -34,11 +37,11 @@ class Surface:
 
     def positions(self, frame: int) -> Floats:
         """The vertices drawn, ``(N, 3)``."""
-        return np.ascontiguousarray(self.mesh.frame(frame)[self.corner_vertex])
+        return np.ascontiguousarray(self._vertices(frame)[self.corner_vertex], dtype=np.float32)
 
     def normals(self, frame: int) -> Floats:
         """Smooth unit normals of the vertices drawn, ``(N, 3)``: area-weighted over the triangles around."""
-        vertices = self.mesh.frame(frame)
+        vertices = self._vertices(frame)
         corners = vertices[self.mesh_triangles]
         area = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         count = len(self.mesh_triangles)
@@ -49,19 +52,29 @@ class Surface:
         unit = np.divide(total, length, out=np.zeros_like(total), where=length > 0)
         return np.ascontiguousarray(unit[self.corner_vertex], dtype=np.float32)
 
+    def _vertices(self, frame: int) -> Floats:
+        coarse = self.mesh.frame(frame)
+        return coarse if self.operator is None else self.operator @ coarse
+
 
 def surface_of(mesh: Mesh) -> Surface:
     """Prepare a mesh. Quads are cut along the diagonal from their first corner."""
-    corners = _triangle_corners(mesh.faces)
-    vertex = mesh.faces.ravel()[corners]
-    if mesh.uv is None:
-        used = np.arange(mesh.num_vertices, dtype=np.int32)
-        return Surface(mesh, used, np.zeros((len(used), 2), np.float32), vertex, vertex)
-    coordinates = mesh.uv.reshape(-1, 2)[corners.ravel()] * np.float32(mesh.material.uv_scale)
+    faces, uv, operator, num_vertices = mesh.faces, mesh.uv, None, mesh.num_vertices
+    if mesh.subdivision:
+        refined = subdivide(faces, uv, num_vertices, mesh.subdivision)
+        faces, uv, operator = refined.faces, refined.uv, refined.operator
+        num_vertices = operator.shape[0]
+    corners = _triangle_corners(faces)
+    vertex = faces.ravel()[corners]
+    if uv is None:
+        used = np.arange(num_vertices, dtype=np.int32)
+        return Surface(mesh, operator, used, np.zeros((num_vertices, 2), np.float32), vertex, vertex)
+    coordinates = uv.reshape(-1, 2)[corners.ravel()] * np.float32(mesh.material.uv_scale)
     keys = np.column_stack([vertex.ravel(), coordinates.view(np.int32)])
     _, first, index = np.unique(keys, axis=0, return_index=True, return_inverse=True)
     return Surface(
         mesh,
+        operator,
         np.ascontiguousarray(vertex.ravel()[first]),
         np.ascontiguousarray(coordinates[first]),
         np.ascontiguousarray(index.reshape(-1, 3), dtype=np.int32),

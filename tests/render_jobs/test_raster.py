@@ -7,6 +7,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+from numpy.typing import NDArray
 from PIL import Image
 
 from render_jobs import (
@@ -23,6 +27,7 @@ from render_jobs import (
     run_job,
 )
 from render_jobs.raster.lighting import light_arrays
+from render_jobs.raster.subdivide import subdivide
 from render_jobs.raster.surfaces import surface_of
 from render_jobs.raster.surroundings import surroundings_of
 from render_truth import BOX, BOX_FACES, SQUARE, SQUARE_FACES, camera, moving, read_picture, rendered_frame
@@ -155,3 +160,58 @@ def test_the_bright_spot_of_an_environment_map_becomes_a_sun() -> None:
         if plain.sun is not None and turned.sun is not None:
             x, y, z = plain.sun[0]
             np.testing.assert_allclose(turned.sun[0], [-y, x, z], atol=0.02)
+
+
+def test_a_cube_subdivides_to_the_points_that_the_rules_give() -> None:
+    cube = BOX - [0.0, 0.0, 0.5]
+    refined = subdivide(BOX_FACES.astype(np.int32), None, 8, 1)
+    points = refined.operator @ cube
+    assert points.shape == (8 + 12 + 6, 3)
+    # corner: F̄ = c/3, R̄ = 2c/3, n = 3, hence (c/3 + 4c/3 + 0)/3 = 5c/9; edge: 3/4 of the midpoint; face: its centre
+    np.testing.assert_allclose(points[:8], cube * 5 / 9, atol=1e-12)
+    np.testing.assert_allclose(np.linalg.norm(points[8:20], axis=1), np.hypot(0.5, 0.5) * 0.75, atol=1e-12)
+    np.testing.assert_allclose(np.linalg.norm(points[20:], axis=1), 0.5, atol=1e-12)
+    assert len(refined.faces) == 24
+
+
+@settings(max_examples=30, derandomize=True, deadline=None)
+@given(arrays(np.float64, (3, 4), elements=st.floats(-10, 10)), st.integers(1, 2), st.booleans())
+def test_subdivision_commutes_with_affine_maps_and_keeps_flat_rims(
+    affine: NDArray[np.float64], levels: int, triangles: bool
+) -> None:
+    quads = np.array([[0, 1, 4, 3], [1, 2, 5, 4], [3, 4, 7, 6], [4, 5, 8, 7]], np.int32)
+    faces = (
+        np.concatenate([quads[:3], [[4, 5, 8, -1], [4, 8, 7, -1]]]).astype(np.int32) if triangles else quads
+    )
+    flat = np.array([[x, y, 0.0] for y in range(3) for x in range(3)], float)
+    refined = subdivide(faces, None, 9, levels)
+    np.testing.assert_allclose(refined.operator.sum(axis=1), 1.0, atol=1e-12)
+    moved = flat @ affine[:, :3].T + affine[:, 3]
+    np.testing.assert_allclose(
+        refined.operator @ moved, (refined.operator @ flat) @ affine[:, :3].T + affine[:, 3], atol=1e-9
+    )
+    points = refined.operator @ flat
+    assert np.abs(points[:, 2]).max() == 0.0
+    assert points.min() >= 0.0
+    assert points.max() <= 2.0
+
+
+@pytest.mark.gl
+@pytest.mark.blender
+def test_both_engines_subdivide_alike(tmp_path: Path) -> None:
+    """A box with an open side and triangles among its quads, textured, moving."""
+    faces = np.array([[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, -1], [0, 6, 4, -1]])
+    mesh = Mesh("box", moving(BOX, [0.1, 0, 0.02], 1), faces, subdivision=2, track_id=1)
+    path = camera([[1.2, -2.6, 1.8]], [0, 0, 0.5], [120.0], [[48.0, 32.0]])
+    job = RenderJob(
+        path, (mesh,), passes=tuple(PASSES), quality=Quality(name="test", samples=1, denoise="off")
+    )
+    for engine in ("cycles", "raster"):
+        job.save(tmp_path / engine)
+        run_job(tmp_path / engine, engine=engine, device="cpu", threads=2, timeout=300)
+    cycles, raster = (rendered_frame(tmp_path / engine, 0) for engine in ("cycles", "raster"))
+    assert (cycles.mask == raster.mask).mean() > 0.998
+    both = (cycles.mask == 1) & (raster.mask == 1)
+    assert both.sum() > 500
+    assert np.quantile(np.abs(cycles.depth[both] - raster.depth[both]), 0.99) < 1e-3
+    assert np.quantile(np.abs(cycles.flow[both] - raster.flow[both]), 0.99) < 0.02
