@@ -7,6 +7,7 @@ faces counts as boundary. Blender's modifier gives the same points (without its 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -69,21 +70,13 @@ def _once(faces: Ints, uv: Floats | None, num_vertices: int) -> Refined:
     middle = _rows(_ones(np.repeat(np.arange(E), 2), edges.ravel(), (E, V)))
     around = _ones(edge_of, corners.face, (E, F))
     inner = np.bincount(edge_of, minlength=E) == 2
-    edge_points = _scaled(np.where(inner, 0.5, 1.0), middle) + _scaled(
-        np.where(inner, 0.25, 0.0), around @ centre
-    )
+    of_ends = _scaled(np.where(inner, 0.5, 1.0), middle)
+    of_faces = _scaled(np.where(inner, 0.25, 0.0), around @ centre)
     vertex_points = _vertex_points(corners, edges, inner, centre, middle, V)
     first_edge, first_face = V, V + E
-    quads = np.stack(
-        [
-            corners.vertex,
-            first_edge + edge_of,
-            first_face + corners.face,
-            first_edge + edge_of[corners.preceding],
-        ],
-        axis=1,
-    )
-    operator = sparse.vstack([vertex_points, edge_points, centre], format="csr")
+    onwards, back = first_edge + edge_of, first_edge + edge_of[corners.preceding]
+    quads = np.stack([corners.vertex, onwards, first_face + corners.face, back], axis=1)
+    operator = sparse.vstack([vertex_points, of_ends + of_faces, centre], format="csr")
     return Refined(Matrix(operator), quads.astype(np.int32), None if uv is None else _finer_uv(corners, uv))
 
 
@@ -97,15 +90,16 @@ def _vertex_points(
     rim = _ones(edges[~inner].ravel(), np.repeat(np.flatnonzero(~inner), 2), (V, E))
     rims = np.bincount(edges[~inner].ravel(), minlength=V)
     inside, on_rim = (rims == 0) & (valence > 0), rims == 2
-    share = np.divide(1.0, valence, out=np.zeros(V), where=inside)
+    share: NDArray[np.float64] = np.divide(1.0, valence, out=np.zeros(V), where=inside)
     in_faces = _ones(corners.vertex, corners.face, (V, centre.shape[0]))
     kept = np.where(inside, (valence - 3.0) * share, np.where(on_rim, 0.5, 1.0))
-    return (
+    points = (
         _scaled(share**2, in_faces @ centre)
         + _scaled(2.0 * share**2, touches @ middle)
         + _scaled(np.where(on_rim, 0.25, 0.0), rim @ middle)
         + sparse.diags_array(kept)
     )
+    return Matrix(points)
 
 
 def _corners(faces: Ints) -> _Corners:
@@ -134,7 +128,7 @@ def _finer_uv(corners: _Corners, uv: Floats) -> Floats:
     return finer
 
 
-def _ones(rows: NDArray[np.integer], columns: NDArray[np.integer], shape: tuple[int, int]) -> Matrix:
+def _ones(rows: NDArray[Any], columns: NDArray[Any], shape: tuple[int, int]) -> Matrix:
     return Matrix((np.ones(len(rows)), (rows, columns)), shape=shape)
 
 

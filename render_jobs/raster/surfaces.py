@@ -21,7 +21,7 @@ class Surface:
 
     Attributes:
         mesh: where it comes from.
-        operator: ``(V', V)`` takes the mesh's vertices to the subdivided ones; None where it is drawn as it is.
+        operator: ``(V', V)`` takes the mesh's vertices to the subdivided ones; None where there are none.
         corner_vertex: ``(N,)`` the (subdivided) vertex behind each vertex drawn.
         uv: ``(N, 2)`` texture coordinates, v up; zero where the mesh has none.
         triangles: ``(M, 3)`` indices of vertices drawn.
