@@ -1,5 +1,6 @@
 """What the project promises about itself: its files, its surface, its import rules, its command line."""
 
+import ast
 import importlib
 import importlib.metadata
 import re
@@ -112,6 +113,33 @@ def test_what_the_requirements_bring_has_a_tested_version_too() -> None:
             if needed and found not in seen:
                 seen.add(found)
                 waiting.append(found)
+
+
+def _imported(folder: Path) -> dict[str, Path]:
+    """Top-level modules that the code of a folder imports, at the top or later, with a file that does so."""
+    found: dict[str, Path] = {}
+    for path in sorted(folder.rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.Import):
+                found |= {alias.name.split(".")[0]: path for alias in node.names}
+            elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
+                found[node.module.split(".")[0]] = path
+    return found
+
+
+@pytest.mark.parametrize("folder", [*PACKAGES, "tests", "tools", "benchmarks", "examples"])
+def test_what_is_imported_is_required(folder: str) -> None:
+    declared = {canonicalize_name(requirement.name) for requirement in _requirements()}
+    ours = {*PACKAGES, "tests", "tests_support", "tools", "benchmarks", "open_people"}
+    inside_blender = {"bmesh", "gpu", "mathutils"}
+    distributions = importlib.metadata.packages_distributions()
+    for name, path in _imported(ROOT / folder).items():
+        if name in sys.stdlib_module_names or name in ours or name in inside_blender:
+            continue
+        owners = {canonicalize_name(owner) for owner in distributions.get(name, [name])}
+        assert owners & declared, (
+            f"{path.relative_to(ROOT)} imports {name}, which pyproject.toml does not name"
+        )
 
 
 # --- Surface and imports ---------------------------------------------------------------------------------
