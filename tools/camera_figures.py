@@ -59,6 +59,10 @@ PALETTE = 128
 COLOURS = {"people": "#8a8f98", "camera": "#1f5fb4", "keyframe": "#d1495b", "body": "#d9a27e"}
 
 
+FACING = {"arrowstyle": "->", "color": "#50555c", "lw": 1.0, "shrinkA": 0, "shrinkB": 0}
+"""The arrow of where a person faces at the first frame."""
+
+
 @dataclass(frozen=True)
 class Cast:
     """People of an embedded motion: what the camera films, and their meshes."""
@@ -179,6 +183,9 @@ def draw_map(ax: Axes, subject: SubjectTrack, path: CameraPath, marks: Array, ax
     for person in subject.people_pelvis:
         ax.plot(*person[:, axes].T, color=COLOURS["people"], lw=2.5, solid_capstyle="round")
         ax.plot(*person[0, axes], "o", color=COLOURS["people"], ms=5)
+    if axes[1] != 2:
+        for here, way in zip(subject.people_pelvis[:, 0], subject.people_facing[:, 0], strict=True):
+            ax.annotate("", here[:2] + 0.8 * way[:2], here[:2], arrowprops=FACING)
     ax.plot(*path.location[:, axes].T, color=COLOURS["camera"], lw=1.6)
     for frame in marks:
         cone(ax, path, int(frame), axes)
@@ -216,7 +223,8 @@ def draw_view(ax: Axes, people: Cast, path: CameraPath, frame: int) -> None:
         towards = one.location[0] - corners.mean(axis=1)
         seen = (np.einsum("fi,fi->f", normal, towards) > 0.0) & (depth[0][faces] > 0.1).all(axis=1)
         polygons.append(pixels[0][faces][seen])
-        shades.append(0.35 + 0.65 * np.clip(normal[seen] @ np.array([0.3, -0.5, 0.81]), 0.0, 1.0))
+        light = towards[seen] / np.linalg.norm(towards[seen], axis=1, keepdims=True) + [0.0, 0.0, 0.8]
+        shades.append(0.3 + 0.7 * np.clip(np.einsum("fi,fi->f", normal[seen], light) / 1.6, 0.0, 1.0))
         depths.append(depth[0][faces].mean(axis=1)[seen])
     order = np.argsort(-np.concatenate(depths))
     colour = np.array(mpl.colors.to_rgb(COLOURS["body"]))
@@ -288,19 +296,19 @@ ROOM = World(
     bounds=((-4.0, -4.0, 0.0), (4.0, 4.0, 3.0)),
 )
 
-CLIPS: tuple[tuple[str, str, World], ...] = (
-    ("dance_b", "a dance: arcs, push and pull", World()),
-    ("dance_b", "the same in a room", ROOM),
-    ("walk_turn", "a walk with a turn: tracking, pan", World()),
+CLIPS: tuple[tuple[str, str, World, int], ...] = (
+    ("dance_b", "a dance: arcs, push and pull", World(), 3),
+    ("dance_b", "the same in a room", ROOM, 3),
+    ("walk_turn", "a walk with a turn: tracking, pan", World(), 1),
 )
 
 
 def director_figure() -> plt.Figure:
     """Three directed clips from above, shots coloured, and the elevation of the camera over time."""
     figure, axes = plt.subplots(2, 3, figsize=(9.6, 4.2), height_ratios=(3.0, 1.0), dpi=100)
-    for column, (name, title, world) in enumerate(CLIPS):
+    for column, (name, title, world, seed) in enumerate(CLIPS):
         people = cast(name, 240)
-        plan = direct(people.subject, LENS, world, "auto", np.random.default_rng(4))
+        plan = direct(people.subject, LENS, world, "auto", np.random.default_rng(seed))
         draw_plan(axes[0, column], plan, world)
         draw_elevation(axes[1, column], plan)
         axes[0, column].set_title(title, fontsize=7, pad=3)
