@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from baseline_scenes import true_scene
 from scipy.spatial.transform import Rotation
 
+from baseline_scenes import true_scene
 from whacamole.baseline.estimators.blazepose import NUM_LANDMARKS
 from whacamole.baseline.estimators.body_points import BodyPoints, body_points
 from whacamole.baseline.estimators.first_guess import first_guess
@@ -132,7 +132,9 @@ def _place(params: BodyParams, body: BodyModel, points: BodyPoints) -> FloatArra
 def test_the_first_guess_is_near(body: BodyModel, points: BodyPoints) -> None:
     state = replace(_state(3, 4), betas=np.zeros(10))
     rest = body.rest_joints(state.betas)
-    state.pose[:, [FITTED.index(n) for n in ("spine1", "spine2", "spine3", "left_collar", "right_collar")]] = 0.0
+    state.pose[
+        :, [FITTED.index(n) for n in ("spine1", "spine2", "spine3", "left_collar", "right_collar")]
+    ] = 0.0
     place = place_points(state, points, rest)
     pixels, metric = np.zeros((4, 33, 2)), np.zeros((4, 33, 3))
     pixels[:, points.landmarks] = place[..., :2] / place[..., 2:] * 600.0 + np.array([320.0, 180.0])
