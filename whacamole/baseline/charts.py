@@ -103,4 +103,5 @@ def _ticks(low: float, span: float) -> FloatArray:
     step = power * min((1.0, 2.0, 5.0, 10.0), key=lambda factor: abs(factor * power - rough))
     first = np.ceil(low / step) * step
     count = int((low + span - first) / step) + 1
-    return np.round(first + step * np.arange(count, dtype=np.float64), 10)
+    ticks: FloatArray = np.round(first + step * np.arange(count, dtype=np.float64), 10)
+    return ticks

@@ -157,10 +157,14 @@ def _noisier(augmentation: Augmentation, factor: float) -> Augmentation:
 
 def _bar(quiet: bool) -> Progress:
     console = Console(stderr=True, quiet=quiet)
-    return Progress(
-        TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(),
-        TextColumn("{task.fields[note]}"), TimeRemainingColumn(), console=console, disable=quiet or not console.is_terminal,
-    )  # fmt: skip
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TextColumn("{task.fields[note]}"),
+        TimeRemainingColumn(),
+    )
+    return Progress(*columns, console=console, disable=quiet or not console.is_terminal)
 
 
 def _draw(out: Path, state: Checkpoint) -> None:

@@ -45,8 +45,10 @@ def load_weights(path: Path) -> MotionVelocimeter:
     Raises:
         BaselineError: the file is missing, damaged or no velocimeter's.
     """
-    from safetensors import SafetensorError, safe_open
-
+    try:
+        from safetensors import SafetensorError, safe_open
+    except ImportError as error:
+        raise BaselineError(f"weights need safetensors ({error}); pip install safetensors") from error
     try:
         with safe_open(str(path), framework="numpy") as stored:
             weights = {name: stored.get_tensor(name) for name in stored.keys()}  # noqa: SIM118 - not a mapping

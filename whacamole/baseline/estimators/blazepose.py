@@ -187,7 +187,7 @@ def _mediapipe() -> Any:
         from mediapipe.python._framework_bindings import resource_util
     except ImportError as error:
         raise BaselineError(
-            f"--estimator mediapipe needs the package mediapipe ({error}); pip install 'whacamole[mediapipe]'"
+            f"--estimator mediapipe needs the package mediapipe ({error}); pip install 'whacamole[video]'"
         ) from error
     resource_util.set_resource_dir(str(Path(mediapipe.__file__).parents[1]))
     return mediapipe

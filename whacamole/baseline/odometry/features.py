@@ -131,6 +131,6 @@ def load_cv2() -> Any:
         import cv2
     except ImportError as error:
         raise BaselineError(
-            f"--vo opencv needs OpenCV ({error}); pip install 'whacamole[mediapipe]', or choose --vo files"
+            f"OpenCV is needed for this ({error}); pip install 'whacamole[video]', or choose --vo files"
         ) from error
     return cv2
