@@ -41,10 +41,10 @@ QUALITIES: dict[str, Quality] = {
     quality.name: quality
     for quality in (
         Quality(name="draft", samples=8),
-        Quality(name="standard", samples=32),
+        Quality(name="standard", samples=16, prefilter="accurate"),
         Quality(
             name="high",
-            samples=128,
+            samples=64,
             denoise="high",
             prefilter="accurate",
             diffuse_bounces=4,

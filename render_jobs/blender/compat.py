@@ -1,4 +1,4 @@
-"""Every difference between Blender versions, and nothing else. Known to fit 4.5 LTS and 5.0."""
+"""Every difference between Blender versions, and nothing else. Tried with 4.5.15 LTS and 5.0.1."""
 
 from __future__ import annotations
 

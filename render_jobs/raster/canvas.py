@@ -48,7 +48,7 @@ class Canvas:
         self._drawn.sort(key=lambda drawn: drawn.surface.mesh.material.alpha_mode == "blend")
         width, height = job.camera.width, job.camera.height
         self._label_target = gl.make_target(width, height, 3)
-        samples = min(int(GL.glGetIntegerv(GL.GL_MAX_SAMPLES)), 4 if job.quality.samples < 32 else 8)
+        samples = min(int(GL.glGetIntegerv(GL.GL_MAX_SAMPLES)), 4 if job.quality.samples < 16 else 8)
         self._picture_target = gl.make_target(width, height, 1, samples)
         self._shadow_target, self._shadow_map = gl.make_shadow_target(SHADOW_SIZE)
         self._surroundings = surroundings_of(job.environment)
