@@ -16,7 +16,7 @@ Wearer = Literal["female", "male", "any"]
 Age = Literal["young", "middle", "old"]
 Origin = Literal["african", "asian", "caucasian"]
 Gender = Literal["female", "male"]
-Colouring = Literal["cloth", "denim", "leather", "keep", "hair"]
+Colouring = Literal["cloth", "pattern", "denim", "leather", "keep", "hair"]
 
 
 @dataclass(frozen=True)
@@ -52,12 +52,12 @@ def _clothes(name: str, slot: Slot, source: str, **more: object) -> Item:
 ITEMS: Final = (
     _clothes("tee_fitted", "top", "female_casualsuit01", part="upper", wearer="female"),
     _clothes("tee_short", "top", "female_sportsuit01", part="upper", wearer="female"),
-    _clothes("blouse", "top", "female_elegantsuit01", part="upper", wearer="female"),
+    _clothes("blouse", "top", "female_elegantsuit01", part="upper", wearer="female", colouring="pattern"),
     _clothes("shirt", "top", "male_casualsuit01", part="upper", wearer="male"),
     _clothes("pullover", "top", "male_casualsuit02", part="upper"),
-    _clothes("shirt_striped", "top", "male_casualsuit03", part="upper", wearer="male"),
+    _clothes("shirt_striped", "top", "male_casualsuit03", part="upper", wearer="male", colouring="pattern"),
     _clothes("tee", "top", "male_casualsuit04", part="upper"),
-    _clothes("jacket", "top", "male_casualsuit05", part="upper"),
+    _clothes("jacket", "top", "male_casualsuit05", part="upper", colouring="pattern"),
     _clothes("tee_loose", "top", "male_casualsuit06", part="upper"),
     _clothes("suit_jacket", "top", "male_elegantsuit01", part="upper", wearer="male", colouring="keep"),
     _clothes(
@@ -66,14 +66,14 @@ ITEMS: Final = (
     _clothes(
         "shorts_denim", "bottom", "female_casualsuit02", part="lower", wearer="female", colouring="denim"
     ),
-    _clothes("skirt", "bottom", "female_elegantsuit01", part="lower", wearer="female", weight_smoothing=60),
+    _clothes("skirt", "bottom", "female_elegantsuit01", part="lower", wearer="female", weight_smoothing=14),
     _clothes("track_trousers", "bottom", "female_sportsuit01", part="lower", wearer="female"),
     _clothes("jeans_worn", "bottom", "male_casualsuit01", part="lower", wearer="male", colouring="denim"),
     _clothes("jeans", "bottom", "male_casualsuit04", part="lower", colouring="denim"),
     _clothes(
         "shorts", "bottom", "male_casualsuit04", part="lower", wearer="male", colouring="denim", cut_at=0.47
     ),
-    _clothes("suit_trousers", "bottom", "male_elegantsuit01", part="lower", wearer="male"),
+    _clothes("suit_trousers", "bottom", "male_elegantsuit01", part="lower", wearer="male", colouring="keep"),
     _clothes("shoes_brown", "shoes", "shoes01", colouring="leather"),
     _clothes("trainers_grey", "shoes", "shoes02", colouring="leather"),
     _clothes("shoes_dress", "shoes", "shoes03", colouring="keep"),

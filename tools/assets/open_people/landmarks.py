@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from open_people.base_mesh import BODY_VERTICES, BaseMesh
+from open_people.covering import skin_normals
 
 Array = NDArray[np.float64]
 
@@ -86,11 +87,7 @@ class Face:
     @cached_property
     def normals(self) -> Array:
         """``(BODY_VERTICES, 3)`` unit normals."""
-        quads = self.mesh.quads[self.mesh.faces_of("body")]
-        p = self.skin[quads]
-        of_face = np.cross(p[:, 2] - p[:, 0], p[:, 3] - p[:, 1])
-        out = np.stack([np.bincount(quads.ravel(), np.repeat(of_face[:, k], 4)) for k in range(3)], axis=1)
-        return out / np.linalg.norm(out, axis=1, keepdims=True)
+        return skin_normals(self.mesh, self.vertices)
 
     def nearest(self, point: Array, among: NDArray[np.int64]) -> int:
         """The vertex nearest to a point."""

@@ -5,13 +5,13 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from open_people import wardrobe
+from open_people import provenance, wardrobe
 from open_people.base_mesh import BODY_VERTICES, BaseMesh, read_base_mesh
 from open_people.body_file import BodyData, schema_arrays, topology_digest
 from open_people.correctives import fit_correctives
@@ -50,23 +50,47 @@ def build(sources: Sources, work: Path, out: Path, samples: int) -> Iterator[str
     write_npz(out / "body" / "open_body.npz", pack(read_full(arrays, "the new body")))
     yield f"body: {len(data.order)} vertices"
 
-    pieces = wardrobe.cut_pieces(sources, fine)
+    pieces = wardrobe.cut_pieces(sources, mesh, fine)
+    yield write_wardrobe(sources, data, fine, pieces, out / "wardrobe")
+    write_provenance(sources, pieces, out)
+    size = sum(path.stat().st_size for name in ("body", "wardrobe") for path in _files(out / name))
+    yield f"body and wardrobe: {size / 1e6:.2f} MB"
+
+
+def write_wardrobe(
+    sources: Sources, data: BodyData, fine: FineRig, pieces: list[wardrobe.Piece], folder: Path
+) -> str:
+    """Writes geometry, textures and catalogue, and returns a line about them."""
     support = wardrobe.support_vertices(pieces)
-    folder = out / "wardrobe"
     write_npz(folder / "support.npz", pack(support_arrays(data, support)))
     write_npz(folder / "items.npz", wardrobe.item_arrays(pieces, support, fine, data.order))
     store = wardrobe.TextureStore()
     catalogue = {
         "items": wardrobe.item_entries(pieces, store),
-        "skins": wardrobe.skin_entries(sources, mesh, store),
+        "skins": wardrobe.skin_entries(sources, data.mesh, store),
         "shape": data.statistics,
-        "topology": topology_digest(arrays["quads"]),
+        "topology": topology_digest(schema_arrays(data)["quads"]),
     }
     wardrobe.write_textures(store, folder / "textures")
-    _write_json(folder / "catalogue.json", catalogue)
-    yield f"wardrobe: {len(pieces)} items on {len(support)} support vertices, {len(store.files)} textures"
-    size = sum(path.stat().st_size for path in out.rglob("*") if path.is_file())
-    yield f"assets: {size / 1e6:.2f} MB"
+    text = json.dumps(catalogue, indent=1, sort_keys=True) + "\n"
+    (folder / "catalogue.json").write_text(text, encoding="utf-8")
+    return f"wardrobe: {len(pieces)} items on {len(support)} support vertices, {len(store.files)} textures"
+
+
+def write_provenance(sources: Sources, pieces: list[wardrobe.Piece], out: Path) -> None:
+    """Writes where everything comes from, and the licence, beside the files."""
+    licence = (sources.mpfb2 / "LICENSE.md").read_text(encoding="utf-8")
+    texts = {
+        "body": provenance.body_text(out / "body"),
+        "wardrobe": provenance.wardrobe_text(sources, pieces, out / "wardrobe"),
+    }
+    for name, text in texts.items():
+        (out / name / "PROVENANCE.md").write_text(text, encoding="utf-8")
+        (out / name / "LICENSE-CC0-1.0.txt").write_text(licence, encoding="utf-8")
+
+
+def _files(folder: Path) -> Iterator[Path]:
+    return (path for path in folder.rglob("*") if path.is_file())
 
 
 def make_body(
@@ -137,7 +161,3 @@ def support_arrays(data: BodyData, support: NDArray[np.int64]) -> BodyArrays:
         uv=np.zeros((1, 2), np.float32),
         uv_faces=np.zeros((1, 3), np.int32),
     )
-
-
-def _write_json(path: Path, value: Any) -> None:
-    path.write_text(json.dumps(value, indent=1, sort_keys=True) + "\n", encoding="utf-8")

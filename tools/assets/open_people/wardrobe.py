@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Final
 
@@ -13,6 +13,7 @@ from scipy.spatial import cKDTree
 
 from open_people import textures
 from open_people.base_mesh import BODY_VERTICES, BaseMesh
+from open_people.covering import INSIDE_EDGE, well_covered
 from open_people.fine_rig import FineRig
 from open_people.item_list import ITEMS, LOGOS, SKINS, Item
 from open_people.proxies import Proxy, face_pieces, read_proxy, rest_positions, tpose_offsets
@@ -23,6 +24,9 @@ WAIST: Final = 0.10
 
 SHOE_LINE: Final = -0.70
 """Pieces whose middle is lower are shoes modelled with a suit; the wardrobe has its own."""
+
+COVERING: Final = ("top", "bottom", "shoes")
+"""Slots that cover skin beyond what MakeHuman lists."""
 
 NO_VERTEX: Final = 65535
 
@@ -56,49 +60,56 @@ class TextureStore:
         return name + suffix
 
 
-def cut_pieces(sources: Sources, fine: FineRig) -> list[Piece]:
+def cut_pieces(sources: Sources, mesh: BaseMesh, fine: FineRig) -> list[Piece]:
     """Reads every item of the list, takes the part it stands for and binds it."""
-    ground = fine.modelled[:BODY_VERTICES, 1].min()
     out = []
     for item in ITEMS:
         whole = read_proxy(sources.proxies / item.folder, item.source)
-        proxy = whole.with_faces(_chosen_faces(item, whole, rest_positions(whole, fine.modelled), ground))
-        hidden = _hidden_by(item, whole, proxy, fine.modelled)
-        out.append(Piece(item, proxy, tpose_offsets(proxy, fine.rig, fine.modelled, fine.tpose), hidden))
+        vertices = rest_positions(whole, fine.modelled)
+        part = whole.with_faces(_chosen_faces(item, whole, vertices))
+        if item.cut_at is not None:
+            part = _cut(part, fine.modelled, item.cut_at)
+        offsets = tpose_offsets(part, fine.rig, fine.modelled, fine.tpose)
+        hidden = _listed(item, whole, part, fine.modelled)
+        if item.slot in COVERING:
+            cloth = np.einsum("nk,nkc->nc", part.weights, fine.tpose.vertices[part.refs]) + offsets
+            hidden = np.union1d(hidden, well_covered(mesh, fine.tpose.vertices, part.faces, cloth))
+        out.append(Piece(item, part, offsets, hidden))
     return out
 
 
-def _chosen_faces(
-    item: Item, proxy: Proxy, vertices: NDArray[np.float64], ground: float
-) -> NDArray[np.bool_]:
-    centre = vertices[np.where(proxy.faces < 0, proxy.faces[:, :1], proxy.faces)].mean(axis=1)
-    chosen = np.ones(len(proxy.faces), bool)
-    if item.part != "whole":
-        # One suit is a single piece; its texture islands part where its seams are.
-        pieces = face_pieces(proxy.faces)
-        if pieces.max() == 0:
-            pieces = face_pieces(proxy.uv_faces)
-        middle = np.bincount(pieces, centre[:, 1]) / np.bincount(pieces)
-        upper, shoe = middle[pieces] > WAIST, middle[pieces] < SHOE_LINE
-        chosen = upper if item.part == "upper" else ~upper & ~shoe
-    if item.cut_at is not None:
-        chosen &= centre[:, 1] > ground + item.cut_at
-    return chosen
+def _chosen_faces(item: Item, proxy: Proxy, vertices: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """``(F,)`` the faces of the suit that belong to the item."""
+    if item.part == "whole":
+        return np.ones(len(proxy.faces), bool)
+    # One suit is a single piece; its texture islands part where its seams are.
+    pieces = face_pieces(proxy.faces)
+    if pieces.max() == 0:
+        pieces = face_pieces(proxy.uv_faces)
+    height = vertices[np.where(proxy.faces < 0, proxy.faces[:, :1], proxy.faces), 1].mean(axis=1)
+    middle = (np.bincount(pieces, height) / np.bincount(pieces))[pieces]
+    return middle > WAIST if item.part == "upper" else (middle <= WAIST) & (middle >= SHOE_LINE)
 
 
-def _hidden_by(item: Item, whole: Proxy, part: Proxy, modelled: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Body vertices under this part: of those the whole suit covers, the ones nearer to it than to what
-    was cut."""
+def _cut(proxy: Proxy, modelled: NDArray[np.float64], height: float) -> Proxy:
+    """What lies above ``height`` over the ground; faces across the cut end at it, so that the hem is even."""
+    level = modelled[:BODY_VERTICES, 1].min() + height
+    y = rest_positions(proxy, modelled)[:, 1]
+    corners = np.where(proxy.faces < 0, proxy.faces[:, :1], proxy.faces)
+    offsets = proxy.offsets + np.outer(np.clip(level - y, 0, None), [0, 1, 0])
+    return replace(proxy, offsets=offsets).with_faces((y[corners] > level).any(axis=1))
+
+
+def _listed(item: Item, whole: Proxy, part: Proxy, modelled: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Of the skin that the whole suit hides by its own list, what is nearer to this part than to the rest."""
     if len(part.refs) == len(whole.refs):
         return whole.hidden
-    positions = rest_positions(whole, modelled)
-    kept = rest_positions(part, modelled)
-    here, _ = cKDTree(kept).query(modelled[whole.hidden])
-    anywhere, _ = cKDTree(positions).query(modelled[whole.hidden])
+    skin = modelled[whole.hidden]
+    here, _ = cKDTree(rest_positions(part, modelled)).query(skin)
+    anywhere, _ = cKDTree(rest_positions(whole, modelled)).query(skin)
     covered = here <= anywhere + 1e-6
     if item.cut_at is not None:
-        low = modelled[:BODY_VERTICES, 1].min() + item.cut_at + 0.02
-        covered &= modelled[whole.hidden, 1] > low
+        covered &= skin[:, 1] > modelled[:BODY_VERTICES, 1].min() + item.cut_at + INSIDE_EDGE
     return whole.hidden[covered]
 
 
