@@ -130,7 +130,8 @@ def _imported(folder: Path) -> dict[str, Path]:
 @pytest.mark.parametrize("folder", [*PACKAGES, "tests", "tools", "benchmarks", "examples"])
 def test_what_is_imported_is_required(folder: str) -> None:
     declared = {canonicalize_name(requirement.name) for requirement in _requirements()}
-    ours = {*PACKAGES, "tests", "tests_support", "tools", "benchmarks", "open_people"}
+    beside = {path.stem for path in (ROOT / folder).rglob("*.py")}
+    ours = {*PACKAGES, "tests", "tools", "benchmarks", "open_people", *beside}
     inside_blender = {"bmesh", "gpu", "mathutils"}
     distributions = importlib.metadata.packages_distributions()
     for name, path in _imported(ROOT / folder).items():
@@ -140,6 +141,13 @@ def test_what_is_imported_is_required(folder: str) -> None:
         assert owners & declared, (
             f"{path.relative_to(ROOT)} imports {name}, which pyproject.toml does not name"
         )
+
+
+def test_the_extras_that_messages_name_exist() -> None:
+    extras = set(PYPROJECT["project"]["optional-dependencies"])
+    for path in (*MARKDOWN, *(path for folder in PACKAGES for path in (ROOT / folder).rglob("*.py"))):
+        for named in re.findall(r"whacamole\[([\w,-]+)\]", path.read_text()):
+            assert set(named.split(",")) <= extras, f"{path.relative_to(ROOT)} names whacamole[{named}]"
 
 
 # --- Surface and imports ---------------------------------------------------------------------------------
