@@ -1,0 +1,37 @@
+"""``whacamole split``: train and test by another rule."""
+
+import json
+from pathlib import Path
+from typing import Annotated, Literal
+
+import typer
+
+__all__ = ["split"]
+
+
+def split(
+    dataset: Annotated[Path, typer.Argument(help="Folder of the dataset.")],
+    by: Annotated[
+        Literal["motion", "person", "stage"],
+        typer.Option(help="What must not be on both sides; motions never are."),
+    ] = "motion",
+    test_fraction: Annotated[
+        float, typer.Option(min=0.0, max=1.0, help="Share that goes to the test split.")
+    ] = 0.2,
+    seed: Annotated[int, typer.Option(help="Another seed gives another split.")] = 0,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print errors only.")] = False,
+    json_output: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
+) -> None:
+    """Write splits/train.txt and splits/test.txt anew; a split that would leak is refused."""
+    from whacamole.dataset import open_dataset
+    from whacamole.dataset.splitting import SplitRule, split_dataset
+
+    sides = split_dataset(open_dataset(dataset).layout, SplitRule(by, test_fraction, seed))
+    if json_output:
+        typer.echo(json.dumps(sides, indent=1))
+        return
+    for name, ids in sides.items():
+        if not quiet:
+            typer.echo(f"{name}: {len(ids)} sequences")
+    if 0.0 < test_fraction < 1.0 and not all(sides.values()):
+        typer.echo("one side is empty, there are few groups to draw from; another --seed may help", err=True)
