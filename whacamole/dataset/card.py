@@ -78,7 +78,7 @@ def _counts(numbers: Statistics) -> str:
         "people (a track in a sequence)": f"{numbers.people:,}",
         "different motions": f"{numbers.motions:,}",
         "sequences of two people recorded together": f"{numbers.interactive:,}",
-        "length": f"{numbers.seconds / 60.0:.1f} min",
+        "seconds": f"{numbers.seconds:,.1f}",
     }
     return "| | |\n|---|---:|\n" + "\n".join(f"| {name} | {value} |" for name, value in rows.items())
 
