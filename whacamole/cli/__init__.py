@@ -11,14 +11,19 @@ from whacamole.cli.body import body
 from whacamole.cli.check import check
 from whacamole.cli.doctor import doctor
 from whacamole.cli.evaluate import evaluate
+from whacamole.cli.export import export
 from whacamole.cli.plan import plan
 from whacamole.cli.recipe import recipe
 from whacamole.cli.render import render
+from whacamole.cli.split import split
+from whacamole.cli.stats import stats
 from whacamole.cli.status import status
 
 __all__ = ["app", "main"]
 
-COMMANDS: tuple[Callable[..., Any], ...] = (render, plan, check, status, evaluate, body, recipe, doctor)
+COMMANDS: tuple[Callable[..., Any], ...] = (
+    render, plan, check, status, stats, split, export, evaluate, body, recipe, doctor,
+)  # fmt: skip
 
 app = typer.Typer(
     name="whacamole",

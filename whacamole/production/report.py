@@ -8,7 +8,7 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
-from whacamole.dataset import DatasetLayout, read_summary, side_of
+from whacamole.dataset import DatasetLayout, read_summary
 from whacamole.motion import FPS
 from whacamole.production.worklist import Worklist
 
@@ -24,6 +24,7 @@ class Production:
         worklist: what the recipe asks for, and what of it is finished now.
         failures: sequence id → one-line error.
         seconds: wall time of the run.
+        sides: split → ids of its sequences.
         kept: how many sequences were already finished when it began.
         dry_run: nothing was made.
     """
@@ -32,6 +33,7 @@ class Production:
     worklist: Worklist
     failures: dict[str, str]
     seconds: float
+    sides: dict[str, list[str]]
     kept: int = 0
     dry_run: bool = False
 
@@ -108,7 +110,7 @@ class Production:
                 str(facts["people"]),
                 str(facts["frames"]),
                 ", ".join(facts["shots"]),
-                side_of(facts["motion_id"], order.recipe.test_fraction),
+                next((side for side, ids in self.sides.items() if order.sequence_id in ids), ""),
                 f"{facts['mean_visible_fraction']:.2f}",
             )
         return table

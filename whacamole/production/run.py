@@ -16,7 +16,9 @@ from render_jobs.farm import run_farm
 from render_jobs.probe import choose_engine
 from whacamole import __version__
 from whacamole.dataset import DatasetLayout, read_json, write_index
+from whacamole.dataset.card import write_card
 from whacamole.dataset.files import write_json
+from whacamole.dataset.splitting import refresh_splits
 from whacamole.errors import DatasetError
 from whacamole.production.attempt import AttemptError, attempt
 from whacamole.production.progress import ProgressDisplay
@@ -55,7 +57,7 @@ def produce(
     layout = DatasetLayout(out.resolve())
     worklist = work_of(recipe, layout.root)
     if dry_run:
-        return Production(layout.root, worklist, {}, 0.0, dry_run=True)
+        return Production(layout.root, worklist, {}, 0.0, {}, dry_run=True)
     recipe = _with_engine(recipe, layout, quiet)
     _check_recipe(layout, recipe)
     facts = _facts(recipe)
@@ -64,10 +66,12 @@ def produce(
     started = time.monotonic()
     failures = _make_all(worklist, jobs, device, quiet)
     write_index(layout, facts, recipe.test_fraction)
+    sides = refresh_splits(layout, recipe.test_fraction)  # by the rule of `split`, companions counted
+    if layout.finished():
+        write_card(layout)
     finished = work_of(recipe, layout.root)
-    return Production(
-        layout.root, finished, failures, time.monotonic() - started, kept=len(worklist.finished)
-    )
+    seconds = time.monotonic() - started
+    return Production(layout.root, finished, failures, seconds, sides, kept=len(worklist.finished))
 
 
 def _with_engine(recipe: Recipe, layout: DatasetLayout, quiet: bool) -> Recipe:
