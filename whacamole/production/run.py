@@ -71,7 +71,8 @@ def produce(
         write_card(layout)
     finished = work_of(recipe, layout.root)
     seconds = time.monotonic() - started
-    return Production(layout.root, finished, failures, seconds, sides, kept=len(worklist.finished))
+    kept = len(worklist.orders) - len(worklist.open)
+    return Production(layout.root, finished, failures, seconds, sides, kept=kept)
 
 
 def _with_engine(recipe: Recipe, layout: DatasetLayout, quiet: bool) -> Recipe:
