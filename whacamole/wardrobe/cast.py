@@ -69,6 +69,10 @@ NO_HAIR: Final[dict[Gender, dict[Age, float]]] = {
     "female": {"young": 0.0, "middle": 0.0, "old": 0.0},
     "male": {"young": 0.05, "middle": 0.15, "old": 0.3},
 }
+AFRO: Final = "hair_afro"
+AFRO_SHARE: Final[dict[Origin, float]] = {"african": 3.0, "asian": 0.0, "caucasian": 0.3}
+"""How often tight curls are chosen, against 1 for every other head of hair."""
+
 HAT_SHARE: Final = 0.12
 UNDER_HAT: Final = ("hair_cropped",)
 """Hair that fits under a hat; others come without."""
@@ -143,7 +147,7 @@ def cast(
     tone = float(rng.uniform(*TONE_RANGE[who[2]]))
     hair_colour = _hair_colour(rng, who[1], who[2])
     eye_colour = _pick_weighted(rng, EYES_OF[who[2]])
-    worn = (*_clothes(rng, wardrobe, who[0]), *_head(rng, wardrobe, who[0], who[1]))
+    worn = (*_clothes(rng, wardrobe, who[0]), *_head(rng, wardrobe, *who))
     left, right = relaxed_hands(float(rng.uniform(0.7, 1.3)))
     return CastMember(*who, years, betas, skin.name, tone, eye_colour, hair_colour, worn, left, right)
 
@@ -234,7 +238,7 @@ def _coloured(rng: np.random.Generator, item: Item) -> Worn:
         )
     if item.colouring == "cloth" and rng.random() < 0.5:
         return Worn(item.name, colour=_near(rng, _pick(rng, CLOTH_COLOURS)))
-    if item.colouring == "cloth":
+    if item.colouring in ("cloth", "pattern"):
         return Worn(
             item.name,
             hue=rng.uniform(0, 1),
@@ -249,9 +253,12 @@ def _near(rng: np.random.Generator, colour: Colour) -> Colour:
     return (float(r), float(g), float(b))
 
 
-def _head(rng: np.random.Generator, wardrobe: Catalogue, gender: Gender, age: Age) -> tuple[Worn, ...]:
+def _head(
+    rng: np.random.Generator, wardrobe: Catalogue, gender: Gender, age: Age, origin: Origin
+) -> tuple[Worn, ...]:
     """Hat or none, hair or none, brows, lashes."""
-    hair = _pick(rng, wardrobe.of_slot("hair", gender)).name
+    heads = [i.name for i in wardrobe.of_slot("hair", gender)]
+    hair = _pick_weighted(rng, {name: AFRO_SHARE[origin] if name == AFRO else 1.0 for name in heads})
     bald = rng.random() < NO_HAIR[gender][age]
     hat = _coloured(rng, _pick(rng, wardrobe.of_slot("hat", gender)))
     wears_hat = gender == "male" and rng.random() < HAT_SHARE

@@ -35,7 +35,7 @@ class Item:
         name: unique in the catalogue.
         slot: what it is worn as.
         wearer: "female", "male" or "any".
-        colouring: how its colours may vary: "cloth", "denim", "leather", "hair" or "keep".
+        colouring: how its colours may vary: "cloth", "pattern", "denim", "leather", "hair" or "keep".
         weight_smoothing: rounds of smoothing of the skinning weights (cloth that hangs between the legs).
         diffuse: texture file; with an alpha channel for hair, brows and lashes.
         normal: normal map file, or None.

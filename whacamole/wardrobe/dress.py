@@ -15,6 +15,7 @@ from whacamole.wardrobe.cast import CastMember
 from whacamole.wardrobe.catalogue import Catalogue, Item, catalogue
 from whacamole.wardrobe.layer import item_layer, join
 from whacamole.wardrobe.layering import tuck_all
+from whacamole.wardrobe.shells import dress_in_shells, dress_in_texture
 from whacamole.wardrobe.textures import TextureFolder, eye_texture, item_texture, skin_texture
 
 Float32Array = npt.NDArray[np.float32]
@@ -24,7 +25,7 @@ BoolArray = npt.NDArray[np.bool_]
 SKIN_PART, EYE_PARTS, TEETH_PARTS, TONGUE_PART = 0, (1, 2), (3, 4), 5
 """Values of the body file's ``vertex_part``."""
 
-ROUGHNESS: Final = {"leather": 0.5, "hair": 0.45, "cloth": 0.85, "denim": 0.9, "keep": 0.75}
+ROUGHNESS: Final = {"leather": 0.5, "hair": 0.45, "cloth": 0.85, "pattern": 0.85, "denim": 0.9, "keep": 0.75}
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,25 +73,39 @@ def dress(
     track_id: int = 1,
     name: str = "person",
     subdivision: int = 0,
+    uv_textures: Path | None = None,
 ) -> list[Mesh]:
     """One person as meshes: skin, eyes, mouth, clothes, hair.
 
+    On the embedded body a person wears the wardrobe. On another SMPL-X model a person wears a picture from
+    ``uv_textures`` if given, else garments derived from the body's surface.
+
     Args:
         member: who.
-        body: the embedded body.
+        body: the body model.
         params: every frame to be drawn, the neighbours −1 and T included.
         textures: folder for textures made to order; people may share it.
+        uv_textures: the user's folder of pictures for the UV map of the body model.
         track_id: what the mask says; all meshes of the person carry it.
         name: prefix of the meshes' names, unique in the job.
         subdivision: levels for skin and clothes; 1 for people the camera sees closely.
+
+    Raises:
+        TakeError: ``uv_textures`` has no fitting picture, or the body model no UV map.
     """
+    posed = body.pose(params).vertices
+    if uv_textures is not None:
+        return dress_in_texture(
+            member, body, posed, uv_textures, track_id=track_id, name=name, subdivision=subdivision
+        )
+    if not fits(body):
+        return dress_in_shells(member, body, posed, track_id=track_id, name=name, subdivision=subdivision)
     wardrobe, folder = catalogue(), TextureFolder(textures)
     look = _Look(name, track_id, subdivision)
     items = [wardrobe.items[worn.item] for worn in member.worn]
     hidden = np.zeros(body.num_vertices, dtype=bool)
     for item in items:
         hidden |= wardrobe.geometry(item.name).hidden
-    posed = body.pose(params).vertices
     skin = skin_texture(wardrobe, member, folder)
     eyes = eye_texture(member.eye_colour, folder)
     return [
