@@ -1,4 +1,4 @@
-"""Array types of the labels, and one way to walk ragged arrays."""
+"""Array types of the labels, and two things done with them."""
 
 from typing import Any
 
@@ -13,6 +13,16 @@ Float64s = NDArray[np.float64]
 Indices = NDArray[np.intp]
 Integers = NDArray[np.integer[Any]]
 """Any integer type."""
+
+
+def transformed(points: Floats, matrix: Floats) -> Float64s:
+    """``matrix`` (k, 3) times every point ``(…, 3)``, in float64.
+
+    Term by term, not by BLAS: the same bits whatever the number of points and threads, and no threads started
+    for what takes a tenth of a millisecond.
+    """
+    x, y, z = (np.asarray(points[..., k, None], dtype=np.float64) for k in range(3))
+    return np.asarray(x * matrix[:, 0] + y * matrix[:, 1] + z * matrix[:, 2], dtype=np.float64)
 
 
 def ranges(counts: Indices) -> tuple[Indices, Indices]:

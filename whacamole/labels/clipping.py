@@ -4,7 +4,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from whacamole.labels.arrays import Float64s, Floats, Indices, Integers
+from whacamole.labels.arrays import Float64s, Floats, Indices, Integers, transformed
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class ScreenTriangles:
 
 def project_points(points_camera: Float64s, K: Float64s) -> Float64s:
     """Pinhole projection of ``(..., 3)`` camera-frame points (OpenCV axes, z > 0) to ``(..., 2)`` pixels."""
-    homogeneous = points_camera @ K.T
+    homogeneous = transformed(points_camera, K)
     pixels: Float64s = homogeneous[..., :2] / homogeneous[..., 2:]
     return pixels
 

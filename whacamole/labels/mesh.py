@@ -13,10 +13,10 @@ def face_normals(vertices: Float64s, faces: Integers) -> Float64s:
 
 
 def triangulated(faces: Integers) -> Integers:
-    """Triangles ``(F, 3)`` as they are; quads ``(Q, 4)`` cut along their first diagonal, ``(2 Q, 3)``."""
+    """Triangles ``(F, 3)`` as they are; quads ``(F, 4)`` cut in two, those with -1 last being triangles."""
     if faces.shape[1] == 3:
         return faces
-    return np.concatenate([faces[:, [0, 1, 2]], faces[:, [0, 2, 3]]])
+    return np.concatenate([faces[:, :3], faces[faces[:, 3] >= 0][:, [0, 2, 3]]])
 
 
 def vertex_areas(vertices: Float64s, faces: Integers) -> Float64s:

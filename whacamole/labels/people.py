@@ -7,7 +7,7 @@ import numpy as np
 
 from camera_rigs import CameraPath
 from whacamole.body import BodyModel, BodyParams
-from whacamole.labels.arrays import AnyArray, Float64s, Floats, Integers
+from whacamole.labels.arrays import AnyArray, Float64s, Floats, Integers, transformed
 from whacamole.labels.mesh import triangulated, vertex_areas
 from whacamole.labels.raster import RasterMesh, rasterize
 from whacamole.labels.visibility import flesh_thickness, joint_visibility, seen_box, truncation, whole_box
@@ -154,8 +154,7 @@ class PeopleLabels:
 
 def to_camera(points_world: Floats, T_camera_world: Float64s) -> Float64s:
     """World points ``(..., 3)`` in the camera frame of one frame, float64."""
-    points: Float64s = points_world @ T_camera_world[:3, :3].T + T_camera_world[:3, 3]
-    return points
+    return transformed(points_world, T_camera_world[:3, :3]) + T_camera_world[:3, 3]
 
 
 def _require_consistent(people: Sequence[LabelledPerson], camera: CameraPath) -> None:

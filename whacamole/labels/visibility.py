@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from whacamole.labels.arrays import Bools, Float64s, Floats
+from whacamole.labels.arrays import Bools, Float64s, Floats, transformed
 from whacamole.labels.clipping import project_points
 from whacamole.labels.raster import NEAR
 
@@ -33,7 +33,7 @@ def flesh_thickness(rest_vertices: Floats, rest_joints: Floats) -> Float64s:
     for number, joint in enumerate(np.asarray(rest_joints, dtype=np.float64)):
         offset = rest_vertices - joint
         nearest = np.full(_DIRECTIONS, np.inf)
-        np.minimum.at(nearest, (offset @ directions.T).argmax(axis=1), np.linalg.norm(offset, axis=1))
+        np.minimum.at(nearest, transformed(offset, directions).argmax(axis=1), np.linalg.norm(offset, axis=1))
         thickness[number] = np.median(nearest[np.isfinite(nearest)])
     return _THICKNESS_FACTOR * thickness + _CLOTHING
 

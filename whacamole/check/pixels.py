@@ -1,0 +1,163 @@
+"""Whether the bodies of the labels are what the images show, frame by frame."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from whacamole.check.limits import Limits
+from whacamole.labels.arrays import AnyArray, Bools, Float64s, Floats, Integers
+from whacamole.labels.clipping import project_points
+from whacamole.labels.people import to_camera
+from whacamole.labels.raster import Raster, RasterMesh, rasterize
+
+_RESIDUAL = 0.04  # metres; how far depth may differ and still speak for this frame
+
+
+@dataclass(frozen=True, eq=False)
+class Shown:
+    """The images of one frame.
+
+    Attributes:
+        mask: ``(H, W)`` track ids.
+        depth: ``(H, W)`` planar z [m].
+    """
+
+    mask: Integers
+    depth: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Drawn:
+    """The labelled bodies of one frame, drawn by the audit itself.
+
+    Attributes:
+        vertices: ``(V, 3)`` of each person in the camera frame [m].
+        raster: all of them in one z-buffer.
+        track: ``(H, W)`` track id of the nearest body, 0 for none.
+    """
+
+    vertices: list[Float64s]
+    raster: Raster
+    track: Integers
+
+
+def draw(
+    bodies: list[Floats], faces: Integers, ids: Integers, K: Float64s, view: Float64s, size: tuple[int, int]
+) -> Drawn:
+    """Draw bodies given in the world through the camera of one frame."""
+    vertices = [to_camera(body, view) for body in bodies]
+    raster = rasterize([RasterMesh(body, faces) for body in vertices], K, *size)
+    return Drawn(vertices, raster, np.append(ids, 0)[raster.mesh])
+
+
+@dataclass(frozen=True, eq=False)
+class PersonPixels:
+    """One person in one frame: how far the picture bears the labels out.
+
+    Attributes:
+        area: pixels in which the labelled body is the nearest one.
+        stray: of those, how many show neither the person nor anything in front.
+        own: of those, how many show the person.
+        sunk: of those, how many show something deeper than the body: the body is not where the label puts it.
+        hands: pixels of the hands among ``area``.
+        hands_off: of those, how many stray or show a depth that is not the hand's.
+    """
+
+    area: int
+    stray: int
+    own: int
+    sunk: int
+    hands: int
+    hands_off: int
+
+
+def person_pixels(
+    drawn: Drawn, shown: Shown, number: int, track: int, is_hand: Bools, limits: Limits
+) -> PersonPixels:
+    """Hold one person's drawn pixels against the mask and the depth.
+
+    Args:
+        drawn: the labelled bodies.
+        shown: the images.
+        number: which of the people.
+        track: the id in the mask.
+        is_hand: ``(F,)`` triangles of the hands.
+        limits: what counts as deeper.
+    """
+    body = drawn.raster.mesh == number
+    deeper = shown.depth[body] - drawn.raster.depth[body]
+    own = shown.mask[body] == track
+    stray = ~own & (deeper > -limits.depth)
+    sunk = own & (deeper > limits.depth)
+    hand = is_hand[drawn.raster.triangle[body]]
+    # Sleeves may cover a wrist, nothing covers fingers; another limb before the hand makes it no evidence.
+    off = (own & (np.abs(deeper) > 1.5 * limits.depth) & (deeper > -5 * limits.depth)) | stray
+    counts = (body, stray, own, sunk, hand, hand & off)
+    return PersonPixels(*(int(np.count_nonzero(flags)) for flags in counts))
+
+
+def flow_error(
+    drawn: Drawn,
+    after: Drawn,
+    shown: Shown,
+    flow: Floats,
+    number: int,
+    track: int,
+    K: tuple[Float64s, Float64s],
+) -> tuple[float, float]:
+    """Median difference of the flow and the motion of one person's bare, visible vertices, in x and y [px].
+
+    Zero where hardly any vertex is bare and in view.
+
+    Args:
+        drawn: the labelled bodies of this frame.
+        after: of the next.
+        shown: the images of this frame.
+        flow: ``(H, W, 2)`` of this frame.
+        number: which of the people.
+        track: the id in the mask.
+        K: intrinsics of this frame and the next.
+    """
+    here, there = drawn.vertices[number], after.vertices[number]
+    ahead = np.flatnonzero((here[:, 2] > 0.1) & (there[:, 2] > 0.1))
+    pixel = project_points(here[ahead], K[0])
+    height, width = shown.mask.shape
+    inside = ((pixel >= 0) & (pixel < [width, height])).all(axis=1)
+    ahead, pixel = ahead[inside], pixel[inside]
+    column, row = pixel.astype(np.intp).T
+    depth = here[ahead, 2]
+    bare = (shown.mask[row, column] == track) & (np.abs(shown.depth[row, column] - depth) < 0.01)
+    bare &= np.abs(drawn.raster.depth[row, column] - depth) < 0.01
+    if np.count_nonzero(bare) < 30:
+        return 0.0, 0.0
+    moved = project_points(there[ahead[bare]], K[1]) - pixel[bare]
+    x, y = np.median(np.abs(flow[row[bare], column[bare]] - moved), axis=0)
+    return float(x), float(y)
+
+
+def likeness(drawn: Drawn, shown: Shown) -> float:
+    """How well labels and images are of one moment, 0 to 1: agreement of ids and depths of all people."""
+    body = drawn.raster.mesh >= 0
+    either = np.count_nonzero(body | (shown.mask > 0))
+    if not either:
+        return float("nan")
+    same = body & (drawn.track == shown.mask)
+    gap = np.abs(shown.depth[same] - drawn.raster.depth[same])
+    return float(np.exp(-gap / _RESIDUAL).sum() / either)
+
+
+def whole_box(drawn: Drawn, number: int, K: Float64s) -> Float64s | None:
+    """Box ``(4,)`` around the projected body, None if any of it is behind the camera."""
+    points = drawn.vertices[number]
+    if points[:, 2].min() < 0.05:
+        return None
+    x, y = project_points(points, K).T
+    return np.array([x.min(), y.min(), x.max(), y.max()])
+
+
+def mask_box(mask: Integers, track: int) -> AnyArray:
+    """Box ``(4,)`` of the outer edges of a track's pixels; zeros if it has none."""
+    rows, columns = np.nonzero(mask == track)
+    if not len(rows):
+        return np.zeros(4)
+    return np.array([columns.min(), rows.min(), columns.max() + 1, rows.max() + 1], dtype=np.float64)
