@@ -74,10 +74,8 @@ def contact(model: BodyModel) -> None:
 
         one, two = label()
         touching = int(one.points.sum() + two.points.sum())
-        print(
-            f"contact, {name}: {best(label):.1f} ms, {touching} vertices touch, least gap
-            {one.distance.min():.3f} m"
-        )
+        gap = one.distance.min()
+        print(f"contact, {name}: {best(label):.1f} ms, {touching} vertices touch, least gap {gap:.3f} m")
 
 
 def raster(model: BodyModel) -> None:
@@ -89,10 +87,7 @@ def raster(model: BodyModel) -> None:
         mesh = RasterMesh(to_camera(body, view), model.faces, cull_back=cull)
         depth = best(lambda mesh=mesh: rasterize([mesh], K, 640, 360))
         outline = best(lambda mesh=mesh: silhouette([mesh], K, 640, 360))
-        print(
-            f"raster, {len(model.faces)} triangles, culled: {cull}: {depth:.1f} ms, silhouette {outline:.1f}
-            ms"
-        )
+        print(f"raster, {len(model.faces)} triangles, {cull=}: {depth:.1f} ms, silhouette {outline:.1f} ms")
 
 
 def sequence(model: BodyModel) -> None:

@@ -200,7 +200,7 @@ def test_a_shifted_principal_point(dataset, sequence, shift):
 
 @pytest.mark.parametrize("camera_too", [False, True])
 def test_y_up_parameters(dataset, sequence, camera_too):
-    """The parameters' world has y up; with ``camera_too`` the camera's as well, so that all fits the pixels."""
+    """The parameters' world has y up; with ``camera_too`` the camera's too, so that all fits the pixels."""
     tilt = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])
     world = np.eye(4)
     world[:3, :3] = tilt
