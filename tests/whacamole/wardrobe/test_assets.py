@@ -109,7 +109,7 @@ def test_the_outline_runs_from_ear_to_chin_to_ear_and_follows_the_head(body):
     assert front[:, 1].argmin() in (7, 8, 9)
     np.testing.assert_allclose(front * [-1, 1, 1], front[::-1], atol=3e-3)
     assert (np.diff(front[:, 0]) > 0).all()
-    # Turned left by k degrees is row 39 + k: the left cheek's outline moves to the front, the right side stays.
+    # Turned left by k degrees is row 39 + k: the left cheek's outline moves to the front, the right stays.
     turned = rows[39 + 35]
     np.testing.assert_array_equal(turned[:8], front[:8])
     assert turned[10:, 2].mean() > front[10:, 2].mean() + 0.01
