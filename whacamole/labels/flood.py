@@ -8,6 +8,7 @@ from scipy.sparse.csgraph import connected_components
 
 from whacamole.labels.arrays import Bools, Float64s, Indices
 from whacamole.labels.patches import PosedSkin
+from whacamole.labels.winding import winding_number
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,7 +29,7 @@ class Flood:
 
 
 def flood(a: PosedSkin, b: PosedSkin, points: Indices, lower: Float64s, mine: Indices) -> Flood:
-    """Tie points of A by edges too short to reach B, and free those tied to a point outside B's box.
+    """Tie points of A by edges too short to reach B, and free those tied to a point outside B.
 
     The ball round a patch that is not among ``mine`` holds the patch and all edges from it and does not touch
     B, so all its edges tie. An edge between two of ``points`` ties if it is shorter than one end's distance
@@ -62,9 +63,20 @@ def flood(a: PosedSkin, b: PosedSkin, points: Indices, lower: Float64s, mine: In
     beyond[count + mine] = False
     anchored = np.zeros(len(clear), dtype=np.bool_)
     anchored[group[beyond]] = True
+    for patch in _one_of_each(group[count:], left_out & ~anchored[group[count:]]):
+        # A tied group that its box does not free, as a hand reached past somebody: one of its points tells.
+        if winding_number(a.points[fine.centre[patch]], b.points, b.map.corner) < 0.5:
+            anchored[group[count + patch]] = True
     free = anchored[group]
     deep = fine.points(np.flatnonzero(left_out & ~free[count:]))
     return Flood(free[:count], group[:count], deep, group[count + fine.patch[deep]])
+
+
+def _one_of_each(group: Indices, among: Bools) -> Indices:
+    """The first of the flagged entries of every group."""
+    flagged = np.flatnonzero(among)
+    _, first = np.unique(group[flagged], return_index=True)
+    return flagged[first]
 
 
 def _connect(start: Indices, end: Indices, count: int) -> Indices:

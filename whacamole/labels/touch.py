@@ -17,6 +17,8 @@ from whacamole.labels.patches import PosedSkin, SkinMap
 EXACT_WITHIN = 0.05
 """Gaps up to this are exact [m]; longer ones are measured between some vertices and may be too long."""
 
+_ROWS_AT_ONCE = 1024
+
 _LONG_EDGE = 0.05  # metres; bounds longer than any edge would tie no more points together
 
 
@@ -106,7 +108,10 @@ class _Near:
 
 
 def _near_patches(a: PosedSkin, b: PosedSkin, apart: Float64s, need: Float64s) -> _Near:
-    """All pairs of fine patches whose balls are at most ``need`` apart.
+    """The fine patches of A whose balls come within ``need`` of B's, and those of B that matter to them.
+
+    Those of B are taken from as far as the longest edge: bounds shorter than an edge would tie no points
+    together.
 
     Args:
         a: the one whose patches decide how far is near.
@@ -114,8 +119,9 @@ def _near_patches(a: PosedSkin, b: PosedSkin, apart: Float64s, need: Float64s) -
         apart: ``(m, m)`` distance between the balls round coarse patches [m].
         need: ``(m,)`` for each coarse patch of A [m].
     """
-    close = apart <= need[:, None]
-    mine, theirs = close.any(axis=1), close.any(axis=0)
+    mine = (apart <= need[:, None]).any(axis=1)
+    wide = np.maximum(need, _LONG_EDGE)
+    theirs = (apart[mine] <= wide[mine, None]).any(axis=0)
     coarse_of = a.map.coarse_of
     fine_a, fine_b = np.flatnonzero(mine[coarse_of]), np.flatnonzero(theirs[coarse_of])
     if not len(fine_a):
@@ -124,8 +130,8 @@ def _near_patches(a: PosedSkin, b: PosedSkin, apart: Float64s, need: Float64s) -
     centre_a, radius_a = a.map.fine.balls(a.points, fine_a)
     centre_b, radius_b = b.map.fine.balls(b.points, fine_b)
     apart = np.maximum(cdist(centre_a, centre_b) - radius_a[:, None] - radius_b, 0.0)
-    close = apart <= need[coarse_of[fine_a], None]
-    mine, theirs = close.any(axis=1), close.any(axis=0)
+    mine = (apart <= need[coarse_of[fine_a], None]).any(axis=1)
+    theirs = (apart[mine] <= wide[coarse_of[fine_a[mine]], None]).any(axis=0)
     clear = np.minimum(beyond, np.where(theirs, np.inf, apart).min(axis=1))
     return _Near(fine_a[mine], fine_b[theirs], clear[mine])
 
@@ -157,7 +163,7 @@ def _one_way(a: PosedSkin, b: PosedSkin, apart: Float64s, gap: Float64s, thresho
     corner = np.append(found.corner, np.zeros(len(sides.deep), dtype=np.intp))
     open_ = np.append(again, np.arange(len(ask), len(chosen)))
     if len(open_):
-        more = _whole(b).closest(a.points[chosen[open_]])
+        more = _search_around(b, a.points[chosen[open_]]).closest(a.points[chosen[open_]])
         distance[open_], corner[open_] = more.distance, more.corner
     group = np.append(np.where(sides.free[ask], -1, sides.group[ask]), sides.deep_group)
     return _Side(chosen, _agree(distance, group), corner, gap)
@@ -178,12 +184,23 @@ def _far_or_enclosed(a: PosedSkin, b: PosedSkin, gap: Float64s) -> _Side:
     none = np.zeros(0, dtype=np.intp)
     if (a.low < b.low).any() or (a.high > b.high).any():
         return _Side(none, np.zeros(0), none, gap)
-    found = _whole(b).closest(a.points)
+    found = _search_around(b, a.points).closest(a.points)
     return _Side(np.arange(len(a.points)), found.distance, found.corner, gap)
 
 
-def _whole(skin: PosedSkin) -> SkinSearch:
-    return SkinSearch(skin, np.arange(len(skin.points)))
+def _search_around(skin: PosedSkin, points: Float64s) -> SkinSearch:
+    """A search of all patches that may hold the point of the skin closest to one of ``points``.
+
+    A patch's centre is a point of the skin, so the nearest centre bounds the distance; a patch whose ball is
+    farther than that cannot hold the closest point.
+    """
+    every = np.arange(len(skin.map.fine.centre))
+    centre, radius = skin.map.fine.balls(skin.points, every)
+    among = np.zeros(len(every), dtype=np.bool_)
+    for start in range(0, len(points), _ROWS_AT_ONCE):
+        far = cdist(points[start : start + _ROWS_AT_ONCE], centre)
+        among |= (far - radius <= far.min(axis=1, keepdims=True)).any(axis=0)
+    return SkinSearch(skin, skin.map.fine.points(every[among]))
 
 
 def _join(own: _Side, other: _Side, skin_map: SkinMap, threshold: float) -> Touch:
