@@ -176,8 +176,8 @@ class BodyModel:
             shaped = self._shaped(params.betas[part]) if fixed is None else fixed
             local = rotations(full[part])
             block, placed = skin_block(self._skin, shaped, params.expression[part], local, rest[part])
+            block += params.transl[part].T.astype(np.float32)
             vertices[part] = block.transpose(2, 0, 1)
-            vertices[part] += params.transl[part, None].astype(np.float32)
             joints[part] = placed + params.transl[part, None]
         return Posed(vertices, joints)
 

@@ -5,6 +5,7 @@ BLAS, whose sums change with the number of threads and the size of a batch. So a
 same bits whatever frames it is posed with.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,23 +20,33 @@ FloatArray = npt.NDArray[np.float64]
 Float32Array = npt.NDArray[np.float32]
 Sparse = Any  # scipy.sparse.csr_array; its type parameters differ between scipy-stubs releases
 
-BLOCK = 32
-"""Frames worked on at once: bounds the working memory (about 20 floats a vertex and frame)."""
+BLOCK = 64
+"""Frames worked on at once: bounds the working memory (three floats a vertex and frame)."""
+
+_TILE = 128
+"""Vertices worked on at once: with the frames of a block, what they need stays in the processor's cache."""
 
 _LEVELS = tree_levels()
 
 
 @dataclass(frozen=True, eq=False)
-class Skin:
-    """What the vertices of one model need, in the form the products want.
+class Tile:
+    """What some neighbouring vertices of a model need, in the form the products want.
 
     Attributes:
-        correctives: sparse (3V, 10 + 486) float32, columns: expression, then R − I of 54 joints row by row.
-        weights: sparse (V, 55) float32.
+        correctives: sparse (3n, 10 + 486) float32, columns: expression, then R − I of 54 joints row by row.
+        weights: sparse (n, 55) float32.
     """
 
     correctives: Sparse
     weights: Sparse
+
+
+@dataclass(frozen=True, eq=False)
+class Skin:
+    """What the vertices of one model need: tiles, in the order of the vertices."""
+
+    tiles: tuple[Tile, ...]
 
     @classmethod
     def build(cls, expression_dirs: Float32Array, posedirs: Sparse, weights: Float32Array) -> "Skin":
@@ -43,7 +54,19 @@ class Skin:
         expression = scipy.sparse.csr_array(expression_dirs.reshape(-1, expression_dirs.shape[-1]))
         correctives = scipy.sparse.hstack([expression, posedirs], format="csr", dtype=np.float32)
         correctives.sort_indices()
-        return cls(correctives, scipy.sparse.csr_array(weights, dtype=np.float32))
+        blend = scipy.sparse.csr_array(weights, dtype=np.float32)
+        starts = range(0, blend.shape[0], _TILE)
+        return cls(tuple(Tile(correctives[3 * a : 3 * (a + _TILE)], blend[a : a + _TILE]) for a in starts))
+
+    @classmethod
+    def joined(cls, skins: Sequence["Skin"]) -> "Skin":
+        """Several skins as one, their vertices in order."""
+        return cls(tuple(tile for skin in skins for tile in skin.tiles))
+
+    @property
+    def num_vertices(self) -> int:
+        """V."""
+        return sum(tile.weights.shape[0] for tile in self.tiles)
 
 
 def rotations(pose: FloatArray) -> FloatArray:
@@ -100,17 +123,20 @@ def skin_block(
     frames = len(local)
     turned, placed = forward_kinematics(local, rest)
     feature = np.concatenate([expression, (local[:, 1:] - np.eye(3)).reshape(frames, -1)], axis=1)
-    bare = skin.correctives @ np.ascontiguousarray(feature.T, dtype=np.float32)
-    bare += shaped
-    x, y, z = bare.reshape(-1, 3, frames).transpose(1, 0, 2)
+    feature = np.ascontiguousarray(feature.T, dtype=np.float32)
     moves = np.concatenate([turned, (placed - _apply(turned, rest))[..., None]], axis=-1, dtype=np.float32)
     columns = np.ascontiguousarray(moves.reshape(frames, NUM_JOINTS, 12).transpose(1, 2, 0))
-    blend = (skin.weights @ columns.reshape(NUM_JOINTS, -1)).reshape(-1, 3, 4, frames)
-    vertices = np.empty((len(x), 3, frames), dtype=np.float32)
-    for axis in range(3):
-        out, row = vertices[:, axis], blend[:, axis]
-        np.multiply(row[:, 0], x, out=out)
-        out += row[:, 1] * y
-        out += row[:, 2] * z
-        out += row[:, 3]
+    columns = columns.reshape(NUM_JOINTS, -1)
+    vertices = np.empty((skin.num_vertices, 3, frames), dtype=np.float32)
+    start = 0
+    for tile in skin.tiles:
+        out = vertices[start : start + tile.weights.shape[0]]
+        bare = tile.correctives @ feature
+        bare += shaped[3 * start : 3 * start + len(bare)]
+        blend = (tile.weights @ columns).reshape(-1, 3, 4, frames)
+        blend[:, :, :3] *= bare.reshape(-1, 1, 3, frames)
+        np.add(blend[:, :, 0], blend[:, :, 1], out=out)
+        out += blend[:, :, 2]
+        out += blend[:, :, 3]
+        start += len(out)
     return vertices, placed

@@ -79,8 +79,8 @@ class Layer:
             block, _ = skin_block(
                 self.skin, shaped.reshape(-1, 1), params.expression[part], local, rest[part]
             )
+            block += params.transl[part].T.astype(np.float32)
             out[part] = block.transpose(2, 0, 1)
-            out[part] += params.transl[part, None].astype(np.float32)
         return out
 
 
@@ -117,10 +117,7 @@ def join(layers: Sequence[Layer]) -> Layer:
     return Layer(
         np.concatenate([layer.template for layer in layers]),
         np.concatenate([layer.shape_dirs for layer in layers]),
-        Skin(
-            scipy.sparse.vstack([layer.skin.correctives for layer in layers], format="csr"),
-            scipy.sparse.vstack([layer.skin.weights for layer in layers], format="csr"),
-        ),
+        Skin.joined([layer.skin for layer in layers]),
     )
 
 
