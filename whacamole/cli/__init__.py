@@ -18,11 +18,12 @@ from whacamole.cli.render import render
 from whacamole.cli.split import split
 from whacamole.cli.stats import stats
 from whacamole.cli.status import status
+from whacamole.cli.view import view
 
 __all__ = ["app", "main"]
 
 COMMANDS: tuple[Callable[..., Any], ...] = (
-    render, plan, check, status, stats, split, export, evaluate, body, recipe, doctor,
+    render, plan, check, status, stats, view, split, export, evaluate, body, recipe, doctor,
 )  # fmt: skip
 
 app = typer.Typer(
