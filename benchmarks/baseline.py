@@ -3,71 +3,55 @@ docs/baseline.md.
 
     python -m benchmarks.baseline parts  WORK     VO alone, MV alone, both; the modes; the focal lengths
     python -m benchmarks.baseline corner WORK     treadmill and skateboard
-    python -m benchmarks.baseline pixels WORK DATASET    MediaPipe and OpenCV on a rendered dataset
-    python -m benchmarks.baseline speed  WORK     frames a second of the core on one CPU core
+    python -m benchmarks.baseline pixels WORK DATASET    the same from pixels, on a rendered test split
+    python -m benchmarks.baseline speed           frames a second of the core on one CPU core
     python -m benchmarks.baseline paths  PICTURES DATASET NAME=PREDICTIONS … ID    paths from above, as SVG
 
 Scenes without pixels come from benchmarks.baseline_scenes; all numbers are those of `whacamole evaluate`.
+What is in WORK already is kept: remove it to begin anew.
 """
 
-import subprocess
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 
 from benchmarks.baseline_scenes import write
+from benchmarks.baseline_tables import INTRINSICS, WORLD, predicted, table
 from whacamole.baseline.charts import Line, chart
 from whacamole.baseline.modes import MODES
 from whacamole.baseline.odometry import Odometry
 from whacamole.baseline.people import PersonEstimate
-from whacamole.baseline.recover import recover
+from whacamole.baseline.recover import place_people, recover
 from whacamole.baseline.weights import bundled_weights
 from whacamole.body import BodyModel, BodyParams
 from whacamole.dataset import open_dataset
 from whacamole.evaluation.core.alignment import umeyama
 
 ORACLE = ("--estimator", "noisy-labels", "--vo", "noisy-labels", "--masks", "none")
-RUNS = {
+PARTS = {
     "VO alone": ("--components", "vo"),
     "MV alone": ("--components", "mv"),
     "VO + MV, paper": ("--mode", "paper"),
     "VO + MV, release": ("--mode", "release"),
     "VO + MV, steady": ("--mode", "steady"),
-    "focal dummy": ("--mode", "steady", "--focal", "dummy"),
-    "focal diagonal": ("--mode", "steady", "--focal", "diagonal"),
-    "focal 24mm": ("--mode", "steady", "--focal", "24mm"),
-    "noise x 0": ("--mode", "steady", "--noise", "0"),
-    "noise x 2": ("--mode", "steady", "--noise", "2"),
 }
+NOISE = {f"steady, noise x {factor}": ("--mode", "steady", "--noise", factor) for factor in (0, 1, 2)}
+FOCALS = {f"focal {source}": ("--focal", source) for source in ("dummy", "diagonal", "24mm", "given")}
 
 
-def command(*words: object) -> None:
-    """Run a whacamole command and let it print."""
-    subprocess.run([sys.executable, "-m", "whacamole", *map(str, words)], check=True)
-
-
-def compared(data: Path, work: Path, runs: dict[str, Sequence[object]], split: str = "test") -> None:
-    """Predict with every set of options and print one table."""
-    predictions = []
-    for label, options in runs.items():
-        out = work / "predictions" / data.name / label.replace(" ", "_")
-        command("baseline", "run", "--data", data, "--split", split, "--out", out, *options, "-q")
-        predictions += ["--pred", f"{label}={out}"]
-    command(
-        "evaluate",
-        "--data",
-        data,
-        "--split",
-        split,
-        *predictions,
-        "--vertices",
-        "none",
-        "--style",
-        "markdown",
-    )
+def compared(
+    data: Path,
+    work: Path,
+    runs: Mapping[str, Sequence[object]],
+    metrics: Sequence[str] = WORLD,
+    title: str = "",
+) -> None:
+    """Predict the test split with every set of options and print one table."""
+    folders = predicted(data, work, runs, "test")
+    print(f"\n{title or data.name}\n\n{table(data, folders, metrics, 'test')}", flush=True)
 
 
 def parts(work: Path) -> None:
@@ -75,34 +59,51 @@ def parts(work: Path) -> None:
     data = work / "plain"
     if not data.exists():
         write(data, "plain", 2)
-    compared(data, work, {label: (*ORACLE, *options) for label, options in RUNS.items()})
+    oracle(data, work)
+
+
+def oracle(data: Path, work: Path) -> None:
+    """The parts, the noise and the focal lengths, from labels with noise."""
+    for title, runs, metrics in (
+        ("parts, from labels with noise", PARTS, WORLD),
+        ("noise", NOISE, WORLD),
+        ("focal lengths, from labels with noise", FOCALS, INTRINSICS),
+    ):
+        every = {f"oracle {label}": (*ORACLE, *options) for label, options in runs.items()}
+        compared(data, work, every, metrics, title)
 
 
 def corner(work: Path) -> None:
     """Motion that says nothing about the way, or the wrong thing."""
-    runs = {
-        label: (*ORACLE, *RUNS[label])
-        for label in ("VO alone", "MV alone", "VO + MV, paper", "VO + MV, release", "VO + MV, steady")
-    }
     for kind in ("treadmill", "skateboard"):
         data = work / kind
         if not data.exists():
             write(data, kind, 2)
-        compared(data, work, runs)
+        compared(data, work, {label: (*ORACLE, *options) for label, options in PARTS.items()})
 
 
 def pixels(work: Path, data: Path) -> None:
-    """From pixels, and what each half costs."""
-    runs = {
-        "mediapipe, opencv": (),
-        "mediapipe, opencv, steady": ("--mode", "steady"),
-        "mediapipe, opencv, focal diagonal, steady": ("--mode", "steady", "--focal", "diagonal"),
-        "mediapipe, true camera without scale, steady": (
-            "--mode", "steady", "--vo", "noisy-labels", "--noise", "0",
-        ),
-        "true people, opencv, steady": ("--mode", "steady", "--estimator", "noisy-labels", "--noise", "0"),
-    }  # fmt: skip
-    compared(data, work, runs, "all")
+    """The parts and the focal lengths from pixels, what each half costs, and the labels on the same
+    sequences."""
+    compared(data, work, {"from pixels": ()}, title="from pixels")
+    # The images are looked at once; what was seen serves all parts.
+    seen = work / "predictions" / data.name / "from_pixels"
+    again = ("--estimator", "files", "--estimates", seen, "--vo", "files", "--trajectories", seen)
+    compared(
+        data,
+        work,
+        {label: (*again, *options) for label, options in PARTS.items()},
+        title="parts, from pixels",
+    )
+    compared(data, work, FOCALS, INTRINSICS, "focal lengths, from pixels")
+    exact = ("--noise", "0")
+    halves = {
+        "masks of the labels": ("--masks", "labels"),
+        "true camera": (*again[:4], "--vo", "noisy-labels", *exact),
+        "true people": ("--estimator", "noisy-labels", *exact, *again[4:]),
+    }
+    compared(data, work, halves, title="halves")
+    oracle(data, work)
 
 
 def speed() -> None:
@@ -120,7 +121,8 @@ def speed() -> None:
         times = []
         for _ in range(5):
             start = time.process_time()
-            recover(people, odometry, 30.0, body, velocimeter.windows, mode)
+            found = recover(people, odometry, 30.0, body, velocimeter.windows, mode)
+            place_people(people, found, body)
             times.append(time.process_time() - start)
         print(f"{mode.name:8} {T / min(times):8.0f} frames a second of CPU time")
 
@@ -154,7 +156,7 @@ def paths(out: Path, data: Path, predictions: dict[str, Path], sequence_id: str)
 
 
 if __name__ == "__main__":
-    task, *words = sys.argv[1:]
+    task, *words = sys.argv[1:] or [""]
     if task == "parts":
         parts(Path(words[0]))
     elif task == "corner":

@@ -1,7 +1,7 @@
 """A video to run on: a sequence of a dataset, or any file."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -42,6 +42,16 @@ class Footage:
     def given_K(self) -> FloatArray | None:  # noqa: N802 - the name of the array in camera.npz
         """The true K (T, 3, 3), where there is one."""
         return None if self.sequence is None else np.asarray(self.sequence.camera["K"], dtype=np.float64)
+
+    def watched(self, watch: Callable[[int], None]) -> "Footage":
+        """The same footage that tells how many frames have been looked at."""
+
+        def images() -> Iterator[Image]:
+            for number, image in enumerate(self.images(), start=1):
+                yield image
+                watch(number)
+
+        return replace(self, images=images)
 
 
 def sequence_footage(sequence: "Sequence") -> Footage:

@@ -1,7 +1,7 @@
 """``whacamole baseline run``: footage in, predictions out."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -9,10 +9,12 @@ from whacamole.baseline.estimators import EstimatorSource
 from whacamole.baseline.footage import Footage, sequence_footage, video_footage
 from whacamole.baseline.intrinsics import intrinsics
 from whacamole.baseline.modes import Components, Mode
-from whacamole.baseline.odometry import OdometrySource, Scene
+from whacamole.baseline.odometry import Odometry, OdometrySource, Scene
 from whacamole.baseline.odometry.masks import masker_of
+from whacamole.baseline.people import PersonEstimate
 from whacamole.baseline.predictions import prediction_arrays, write_prediction
 from whacamole.baseline.recover import recover
+from whacamole.baseline.rigid import FloatArray
 from whacamole.baseline.velocimeter import MotionVelocimeter
 from whacamole.baseline.weights import bundled_weights, trained_on
 from whacamole.body import BodyModel
@@ -68,6 +70,14 @@ class Outcome:
     problem: str = ""
 
 
+Watch = Callable[[Footage, str, int], None]
+"""Told the footage, what is being looked for ("people" or "camera") and how many frames were looked at."""
+
+
+def _nobody_watches(footage: Footage, stage: str, frames: int) -> None:
+    pass
+
+
 def split_footage(root: Path, split: str) -> list[Footage]:
     """The footage of a split of a dataset, or of all of it.
 
@@ -84,16 +94,18 @@ def split_footage(root: Path, split: str) -> list[Footage]:
     return [sequence_footage(sequence) for sequence in chosen]
 
 
-def run_all(footage: list[Footage], setup: Setup, out: Path) -> Iterator[Outcome]:
+def run_all(
+    footage: list[Footage], setup: Setup, out: Path, watch: Watch = _nobody_watches
+) -> Iterator[Outcome]:
     """Predict every video into ``out``; one that cannot be done is told and left out, the others go on."""
     for one in footage:
         try:
-            yield run_one(one, setup, out / f"{one.id}.npz")
+            yield run_one(one, setup, out / f"{one.id}.npz", watch)
         except BaselineError as error:
             yield Outcome(one.id, frames=one.num_frames, problem=str(error))
 
 
-def run_one(footage: Footage, setup: Setup, path: Path) -> Outcome:
+def run_one(footage: Footage, setup: Setup, path: Path, watch: Watch = _nobody_watches) -> Outcome:
     """Predict one video and write it to ``path``.
 
     Raises:
@@ -103,9 +115,7 @@ def run_one(footage: Footage, setup: Setup, path: Path) -> Outcome:
     if focal == "auto":
         focal = "given" if footage.given_K is not None else setup.mode.focal
     K = intrinsics(focal, footage.width, footage.height, footage.num_frames, footage.given_K)
-    people = setup.estimator.estimate(footage, K, setup.body)
-    masker = masker_of(setup.masks, footage, people, K, setup.body)
-    odometry = setup.odometry.track(Scene(footage, K, masker, setup.masks))
+    people, odometry = _observed(footage, setup, K, watch)
     velocimeter, weight_notes = _weights(setup, footage)
     recovery = recover(
         people, odometry, footage.fps, setup.body, velocimeter.windows, setup.mode, setup.components
@@ -131,6 +141,20 @@ def run_one(footage: Footage, setup: Setup, path: Path) -> Outcome:
         ground_truth_used=about["ground_truth_used"],
         notes=notes,
     )
+
+
+def _observed(
+    footage: Footage, setup: Setup, K: FloatArray, watch: Watch
+) -> tuple[Sequence[PersonEstimate], Odometry]:
+    """People and camera as their sources see them."""
+
+    def watched(stage: str) -> Footage:
+        watch(footage, stage, 0)
+        return footage.watched(lambda frames: watch(footage, stage, frames))
+
+    people = setup.estimator.estimate(watched("people"), K, setup.body)
+    masker = masker_of(setup.masks, footage, people, K, setup.body)
+    return people, setup.odometry.track(Scene(watched("camera"), K, masker, setup.masks))
 
 
 def one_video(path: Path) -> list[Footage]:

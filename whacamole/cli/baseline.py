@@ -1,11 +1,13 @@
 """``whacamole baseline``: WHAC, trained and run."""
 
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 if TYPE_CHECKING:
+    from whacamole.baseline.footage import Footage
     from whacamole.baseline.run import Outcome, Setup
 
 __all__ = ["app"]
@@ -131,12 +133,48 @@ def run(
     )
     footage = split_footage(data, split) if data is not None else one_video(video)  # type: ignore[arg-type]
     outcomes = []
-    for outcome in run_all(footage, setup, out):
-        outcomes.append(outcome)
-        _tell(outcome, quiet=quiet or json_output)
+    with _Bar(len(footage), quiet=quiet or json_output) as bar:
+        for outcome in run_all(footage, setup, out, bar.watch):
+            outcomes.append(outcome)
+            bar.done()
+            _tell(outcome, quiet=quiet or json_output)
     _report(outcomes, setup, out, quiet=quiet, as_json=json_output)
     if any(outcome.problem for outcome in outcomes):
         raise typer.Exit(1)
+
+
+class _Bar:
+    """Progress on a terminal: which sequence of how many, what is looked for, and the frames looked at."""
+
+    def __init__(self, sequences: int, *, quiet: bool) -> None:
+        from rich.console import Console
+        from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
+
+        console = Console(stderr=True)
+        columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TextColumn("frames"))
+        off = quiet or not console.is_terminal
+        # What is printed goes above the bar, but never away from a file that it was sent to.
+        self._bar = Progress(
+            *columns, console=console, disable=off, transient=True, redirect_stdout=sys.stdout.isatty()
+        )
+        self._task = self._bar.add_task("", total=None)
+        self._sequences, self._count = sequences, 0
+
+    def __enter__(self) -> "_Bar":
+        self._bar.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._bar.stop()
+
+    def watch(self, footage: "Footage", stage: str, frames: int) -> None:
+        """Where the run is."""
+        words = f"{self._count + 1} of {self._sequences}: {footage.id}, {stage}"
+        self._bar.update(self._task, description=words, completed=frames, total=footage.num_frames)
+
+    def done(self) -> None:
+        """A sequence is finished."""
+        self._count += 1
 
 
 def _one_thread() -> None:

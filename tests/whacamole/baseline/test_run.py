@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -142,6 +143,55 @@ def test_predictions_of_one_run_are_estimates_for_another(dataset: Path, tmp_pat
         moved = body.pose_joints(two.params)[two.valid, 0]
         np.testing.assert_allclose(moved, pelvis * [1.0, 1.0, 1.5], atol=1e-5)
     assert np.flatnonzero(same[1].valid).tolist() == list(range(100))
+
+
+def test_the_camera_of_one_run_is_odometry_for_another(dataset: Path, tmp_path: Path) -> None:
+    """Its scale is lost on the way, and what true data it was made from is not."""
+    _run("run", "--data", dataset, "--out", tmp_path / "a", *ORACLE, "-q")
+    files = (
+        "--estimator",
+        "files",
+        "--estimates",
+        tmp_path / "a",
+        "--vo",
+        "files",
+        "--trajectories",
+        tmp_path / "a",
+    )
+    result = _run("run", "--data", dataset, "--out", tmp_path / "b", *files, "--masks", "none", "--json")
+    assert result.exit_code == 0, result.output
+    assert json.loads(result.output)["ground_truth_used"] == ["K", "camera", "people"]
+    first, second = (np.load(tmp_path / name / "pair-00.npz") for name in ("a", "b"))
+    np.testing.assert_allclose(second["T_world_camera"], first["T_world_camera"], atol=1e-6)
+    np.testing.assert_array_equal(second["detected"], first["detected"])
+    with np.load(tmp_path / "a" / "pair-00.npz") as stored:
+        arrays = {key: stored[key] for key in stored.files}
+    arrays["T_world_camera"][:, :3, 3] *= 7.0
+    write_arrays(tmp_path / "a" / "pair-00.npz", arrays)
+    _run("run", "--data", dataset, "--out", tmp_path / "c", *files, "--masks", "none", "-q")
+    third = np.load(tmp_path / "c" / "pair-00.npz")
+    np.testing.assert_allclose(third["T_world_camera"], second["T_world_camera"], atol=1e-6)
+
+
+def test_estimates_with_a_focal_length_need_no_camera(dataset: Path, tmp_path: Path) -> None:
+    """K alone, as a network's output has it, says at which depth its people are."""
+    _run("run", "--data", dataset, "--out", tmp_path / "a", *ORACLE, "--noise", 0, "-q")
+    path = tmp_path / "a" / "pair-00.npz"
+    with np.load(path) as stored:
+        kept = {key: stored[key] for key in stored.files if key not in ("T_world_camera", "camera_valid")}
+    write_arrays(path, kept)
+    footage, body = sequence_footage(open_dataset(dataset)["pair-00"]), BodyModel.embedded()
+    far = np.tile(K * [[2.0], [2.0], [1.0]], (footage.num_frames, 1, 1))
+    [one, _] = FilesEstimator(tmp_path / "a").estimate(footage, far, body)
+    truth = open_dataset(dataset)["pair-00"].people["joints_camera"][0, :, 0]
+    np.testing.assert_allclose(body.pose_joints(one.params)[:, 0], truth * [1.0, 1.0, 2.0], atol=1e-5)
+
+
+def test_a_run_tells_how_far_it_is(dataset: Path) -> None:
+    footage, told = sequence_footage(open_dataset(dataset)["pair-00"]), []
+    footage = replace(footage, images=lambda: _images(3)).watched(told.append)
+    assert len(list(footage.images())) == 3
+    assert told == [1, 2, 3]
 
 
 def test_crops_become_places_by_the_papers_depth(dataset: Path, tmp_path: Path, scene: TrueScene) -> None:

@@ -18,10 +18,10 @@ from whacamole.baseline.people import PersonEstimate, rest_pelvis
 from whacamole.baseline.rigid import FloatArray
 from whacamole.body import BodyModel, BodyParams
 from whacamole.errors import BaselineError, EvaluationError
-from whacamole.evaluation.io.arrays import read_npz, take
-from whacamole.evaluation.io.native import people_of, read_native
+from whacamole.evaluation.io.arrays import read_npz, take, text
+from whacamole.evaluation.io.native import people_of
 from whacamole.evaluation.io.predictions import PredictionFolder
-from whacamole.evaluation.records import PersonTrack, Recording
+from whacamole.evaluation.records import CameraTrack, PersonTrack, Recording
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,12 @@ class FilesEstimator:
 
     folder: Path
     name: str = "files"
-    ground_truth: tuple[str, ...] = ()
+
+    @property
+    def ground_truth(self) -> tuple[str, ...]:
+        """What the files say that they were given; of predictions of this project alone."""
+        paths = [self.folder] if self.folder.is_file() else sorted(self.folder.glob("*.npz"))
+        return tuple(dict.fromkeys(truth for path in paths for truth in truth_behind(path)))
 
     def estimate(self, footage: Footage, K: FloatArray, body: BodyModel) -> Sequence[PersonEstimate]:
         """The people of the footage's file.
@@ -71,13 +76,18 @@ class FilesEstimator:
         if not path.is_file():
             return PredictionFolder(self.folder).read(footage.id, footage.fps)
         values = read_npz(path)
-        if "crop_scale" not in values or "transl_camera" in values:
-            return read_native(path, footage.id, footage.fps)
+        if "detected" in values:
+            # A prediction: there "valid" says that the camera was known too, which is of no matter here.
+            values["valid"] = values["detected"]
         frame_index = take(values, "frame_index", path, (None,)).astype(np.intp)
-        T = len(frame_index)
-        place = np.searchsorted(footage.frame_index, frame_index).clip(0, footage.num_frames - 1)
-        values["transl_camera"] = _from_crops(values, path, T, K[place])
-        return Recording(footage.id, frame_index, footage.fps, people_of(values, path, T))
+        T, camera = len(frame_index), None
+        if "transl_camera" not in values and "crop_scale" in values:
+            place = np.searchsorted(footage.frame_index, frame_index).clip(0, footage.num_frames - 1)
+            values["transl_camera"] = _from_crops(values, path, T, K[place])
+        elif "K" in values:
+            nowhere = np.tile(np.eye(4), (T, 1, 1))
+            camera = CameraTrack(nowhere, np.zeros(T, dtype=bool), take(values, "K", path, (T, 3, 3)))
+        return Recording(footage.id, frame_index, footage.fps, people_of(values, path, T), camera)
 
     def _rows(self, recording: Recording, footage: Footage) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
         """Place in the footage of every frame of the file."""
@@ -93,6 +103,17 @@ class FilesEstimator:
                 f"the video has {footage.num_frames} from {int(footage.frame_index[0])} on"
             )
         return np.asarray(rows, dtype=np.intp)
+
+
+def truth_behind(path: Path) -> tuple[str, ...]:
+    """True data that went into a prediction of this project; nothing for other files."""
+    if path.suffix != ".npz":
+        return ()
+    try:
+        used = text(read_npz(path), "ground_truth_used")
+    except EvaluationError:
+        return ()  # told where the file is used
+    return tuple(part for part in used.split(",") if part)
 
 
 def _from_crops(values: dict[str, np.ndarray], path: Path, T: int, K: FloatArray) -> FloatArray:  # type: ignore[type-arg]

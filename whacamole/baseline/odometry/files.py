@@ -1,12 +1,14 @@
-"""Trajectories that another program made, one TUM file a sequence (DPVO, DROID-SLAM, ORB-SLAM …)."""
+"""Trajectories that another program made (DPVO, DROID-SLAM, ORB-SLAM …), or a former run of this one."""
 
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
+from whacamole.baseline.estimators.files import truth_behind
 from whacamole.baseline.odometry.trajectory import Odometry, Scene
 from whacamole.errors import BaselineError, EvaluationError
+from whacamole.evaluation.io.native import read_native
 from whacamole.evaluation.io.tum import read_tum
 
 
@@ -15,6 +17,7 @@ class FilesOdometry:
     """``files``: ``FOLDER/<id>.txt`` or ``.tum``, lines ``time tx ty tz qx qy qz qw``, camera to world.
 
     Whole numbers as times are places in the video, others seconds. Frames without a line are lost frames.
+    ``FOLDER/<id>.npz`` is a prediction of this project: its camera, without its scale.
 
     Attributes:
         folder: where the files are, or the one file for a video.
@@ -30,24 +33,36 @@ class FilesOdometry:
             BaselineError: there is none, or it cannot be used.
         """
         footage = scene.footage
-        places = [self.folder] if self.folder.is_file() else [
-            self.folder / f"{footage.id}{end}" for end in (".txt", ".tum")
-        ]  # fmt: skip
-        path = next((place for place in places if place.is_file()), None)
-        if path is None:
-            raise BaselineError(f"{places[0]}: no trajectory for {footage.id}; write one in the TUM format")
+        path = self._path(footage.id)
         try:
-            recording = read_tum(path, footage.id, footage.fps)
+            if path.suffix == ".npz":
+                recording = read_native(path, footage.id, footage.fps)
+                rows = np.searchsorted(footage.frame_index, recording.frame_index)
+                inside = np.isin(recording.frame_index, footage.frame_index)
+            else:
+                recording = read_tum(path, footage.id, footage.fps)
+                rows, inside = recording.frame_index, recording.frame_index < footage.num_frames
         except EvaluationError as error:
             raise BaselineError(str(error)) from error
-        assert recording.camera is not None
-        inside = recording.frame_index < footage.num_frames
+        camera = recording.camera
+        if camera is None:
+            raise BaselineError(f"{path}: no camera in it; give T_world_camera")
         if not inside.all():
             raise BaselineError(
-                f"{path}: frame {int(recording.frame_index.max())}, the video has {footage.num_frames}; "
+                f"{path}: frame {int(recording.frame_index[~inside][-1])}, the video has "
+                f"{footage.num_frames} from {int(footage.frame_index[0])} on; "
                 "give its frames the numbers from 0 or times in seconds"
             )
         poses = np.tile(np.eye(4), (footage.num_frames, 1, 1))
         valid = np.zeros(footage.num_frames, dtype=bool)
-        poses[recording.frame_index], valid[recording.frame_index] = recording.camera.T_world_camera, True
-        return Odometry.from_poses(poses, valid, notes=recording.notes)
+        poses[rows], valid[rows] = camera.T_world_camera, camera.valid
+        return Odometry.from_poses(poses, valid, truth_behind(path), recording.notes)
+
+    def _path(self, footage_id: str) -> Path:
+        if self.folder.is_file():
+            return self.folder
+        places = [self.folder / f"{footage_id}{end}" for end in (".txt", ".tum", ".npz")]
+        path = next((place for place in places if place.is_file()), None)
+        if path is None:
+            raise BaselineError(f"{places[0]}: no trajectory for {footage_id}; write one in the TUM format")
+        return path
