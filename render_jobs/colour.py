@@ -17,6 +17,14 @@ def linear(colour: Colour) -> tuple[float, float, float]:
     return float(curve[0]), float(curve[1]), float(curve[2])
 
 
+def linear_image(pixels: NDArray[np.uint8]) -> NDArray[np.float32]:
+    """8-bit sRGB of any shape as linear light."""
+    value = np.arange(256) / 255.0
+    curve = np.where(value <= 0.04045, value / 12.92, ((value + 0.055) / 1.055) ** 2.4)
+    light: NDArray[np.float32] = curve.astype(np.float32)[pixels]
+    return light
+
+
 def encoded(light: NDArray[Any]) -> NDArray[np.uint8]:
     """Linear light as 8-bit sRGB (IEC 61966-2-1), clipped."""
     value = np.clip(light, 0.0, 1.0)

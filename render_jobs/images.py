@@ -13,6 +13,8 @@ import OpenEXR
 from numpy.typing import NDArray
 from PIL import Image
 
+from render_jobs.job import RenderJob
+from render_jobs.noise import with_noise
 from render_jobs.passes import PASSES, RenderPass
 
 PARTIAL_FOLDER = ".partial"
@@ -52,15 +54,19 @@ def publish_frame(out: Path, frame: int, writers: Mapping[str, Writer], image_fo
         beside.replace(target)
 
 
-def picture_writer(source: Path | Image.Image, image_format: str) -> Writer:
-    """What encodes a display-ready picture as JPEG (full colour resolution) or PNG, without any metadata."""
+def picture_writer(source: Path | Image.Image, job: RenderJob, frame: int) -> Writer:
+    """What puts the job's noise on a display-ready picture and encodes it, without any metadata.
+
+    JPEG keeps the full resolution of the colours.
+    """
 
     def write(path: Path) -> None:
         with source if isinstance(source, Image.Image) else Image.open(source) as image:
-            if image_format == "jpg":
-                image.convert("RGB").save(path, format="JPEG", quality=JPEG_QUALITY, subsampling=0)
+            finished = with_noise(image.convert("RGB"), job.noise, job.seed, frame)
+            if job.image_format == "jpg":
+                finished.save(path, format="JPEG", quality=JPEG_QUALITY, subsampling=0)
             else:
-                image.convert("RGB").save(path, format="PNG", compress_level=PNG_LEVEL)
+                finished.save(path, format="PNG", compress_level=PNG_LEVEL)
 
     return write
 

@@ -33,6 +33,9 @@ if TYPE_CHECKING:
 ImageFormat = Literal["jpg", "png"]
 Tone = Literal["standard", "agx"]
 
+FILM_WIDTH_M = 0.036
+"""Of the film that focal lengths and f-numbers refer to, along the longer side of the image."""
+
 MAX_LENS_SHIFT = 8.0
 """Principal points further than this many image widths from the centre are taken for a mistake."""
 
@@ -54,9 +57,15 @@ class RenderJob:
             flow is that of the scene alone.
         shutter: share of the frame time during which the shutter is open, for motion blur; 0 is a sharp
             image. Labels are never blurred: they hold at the frame's time, the middle of the exposure.
+        f_number: focal length over the diameter of the lens's opening, for depth of field; None is a pinhole,
+            sharp everywhere. The focal length is that on film 36 mm along the longer side of the image.
+            Labels are never out of focus.
+        focus_distance: (T + 2,) planar depth [m] that is in focus, frames −1 … T; needed with ``f_number``.
         exposure: in stops.
+        noise: standard deviation of the sensor's noise at middle grey, in 8-bit levels
+            (:mod:`render_jobs.noise`).
         tone: ``agx`` compresses highlights as a film camera does, ``standard`` is plain sRGB.
-        seed: of the sampling noise.
+        seed: of the noise of sampling and of the sensor.
     """
 
     camera: CameraPath
@@ -68,7 +77,10 @@ class RenderJob:
     image_format: ImageFormat = "jpg"
     camera_neighbours: CameraPath | None = None
     shutter: float = 0.0
+    f_number: float | None = None
+    focus_distance: NDArray[np.float64] | None = None
     exposure: float = 0.0
+    noise: float = 0.0
     tone: Tone = "agx"
     seed: int = 0
 
@@ -77,6 +89,7 @@ class RenderJob:
         object.__setattr__(self, "lights", tuple(self.lights))
         object.__setattr__(self, "passes", checked_passes(self.passes))
         self._check_settings()
+        self._check_focus()
         _check_meshes(self.meshes, self.num_frames)
         _check_image(self.camera)
         neighbours = self.camera_neighbours
@@ -95,6 +108,15 @@ class RenderJob:
     def max_track_id(self) -> int:
         """The largest value in the masks."""
         return max(mesh.track_id for mesh in self.meshes)
+
+    @property
+    def apertures(self) -> NDArray[np.float64]:
+        """Diameter (T + 2,) [m] of the lens's opening in the frames −1 … T; zero for a pinhole."""
+        K, _ = self.camera_with_neighbours()
+        if self.f_number is None:
+            return np.zeros(len(K))
+        focal_length = K[:, 0, 0] * FILM_WIDTH_M / max(self.camera.width, self.camera.height)
+        return np.asarray(focal_length / self.f_number, np.float64)
 
     def camera_with_neighbours(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """``K`` ``(T + 2, 3, 3)`` and ``T_world_camera`` ``(T + 2, 4, 4)`` of the frames −1 … T."""
@@ -138,8 +160,25 @@ class RenderJob:
             raise RenderJobError(f"shutter {self.shutter} is outside 0..1, a share of the frame time")
         if not -20.0 <= self.exposure <= 20.0:
             raise RenderJobError(f"exposure {self.exposure} is outside -20..20 stops")
+        if not 0.0 <= self.noise <= 255.0:
+            raise RenderJobError(f"noise {self.noise} is outside 0..255, 8-bit levels at middle grey")
         if not 0 <= self.seed < 2**31:
             raise RenderJobError(f"seed {self.seed} is outside 0..2³¹−1")
+
+    def _check_focus(self) -> None:
+        if self.f_number is None:
+            return
+        if not 0.1 <= self.f_number <= 1000.0:
+            raise RenderJobError(f"f_number {self.f_number} is outside 0.1..1000")
+        if self.focus_distance is None:
+            raise RenderJobError("f_number is given without focus_distance: say what is in focus")
+        distance = np.asarray(self.focus_distance, np.float64)
+        object.__setattr__(self, "focus_distance", distance)
+        if distance.shape != (self.num_frames + 2,) or not (distance > 0).all():
+            raise RenderJobError(
+                f"focus_distance needs {self.num_frames + 2} positive distances, frames −1 to "
+                f"{self.num_frames}; it has shape {distance.shape}"
+            )
 
 
 def _check_meshes(meshes: Sequence[Mesh], num_frames: int) -> None:

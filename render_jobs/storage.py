@@ -59,7 +59,9 @@ class JobRecord(SceneValue):
     passes: tuple[str, ...]
     image_format: ImageFormat
     shutter: float
+    f_number: float | None = None
     exposure: float
+    noise: float = 0.0
     tone: Tone
     seed: int
     files: dict[str, Annotated[str, Field(pattern="^[0-9a-f]{64}$")]]
@@ -98,7 +100,10 @@ def load_job(folder: Path) -> RenderJob:
             image_format=record.image_format,
             camera_neighbours=neighbours,
             shutter=record.shutter,
+            f_number=record.f_number,
+            focus_distance=_load_focus(folder) if record.f_number is not None else None,
             exposure=record.exposure,
+            noise=record.noise,
             tone=record.tone,
             seed=record.seed,
         )
@@ -143,7 +148,9 @@ def _write(job: RenderJob, folder: Path) -> None:
         passes=job.passes,
         image_format=job.image_format,
         shutter=job.shutter,
+        f_number=job.f_number,
         exposure=job.exposure,
+        noise=job.noise,
         tone=job.tone,
         seed=job.seed,
         files={path.relative_to(folder).as_posix(): _sha256(path) for path in paths},
@@ -191,6 +198,8 @@ def _write_camera(job: RenderJob, folder: Path) -> None:
     if job.camera_neighbours is not None:
         arrays["neighbour_K"] = job.camera_neighbours.K
         arrays["neighbour_T_world_camera"] = job.camera_neighbours.T_world_camera
+    if job.focus_distance is not None:
+        arrays["focus_distance"] = job.focus_distance
     with (folder / "camera.npz").open("wb") as file:
         np.savez(file, **{name: np.asarray(value, np.float64) for name, value in arrays.items()})
 
@@ -286,6 +295,13 @@ def _load_camera(folder: Path, record: JobRecord) -> tuple[CameraPath, CameraPat
     if camera.num_frames != record.num_frames:
         raise RenderJobError(f"camera.npz holds {camera.num_frames} frames, job.json {record.num_frames}")
     return camera, path("neighbour_") if "neighbour_K" in arrays else None
+
+
+def _load_focus(folder: Path) -> NDArray[np.float64]:
+    with np.load(folder / "camera.npz", allow_pickle=False) as file:
+        if "focus_distance" not in file:
+            raise RenderJobError("camera.npz lacks focus_distance; save the job again")
+        return np.asarray(file["focus_distance"], np.float64)
 
 
 def _with_folder(value: Value, folder: Path) -> Value:

@@ -36,6 +36,7 @@ def add_camera(job: RenderJob) -> None:
     data.sensor_fit = "HORIZONTAL"
     data.sensor_width = SENSOR_WIDTH_MM
     data.clip_start, data.clip_end = CLIP_START_M, CLIP_END_M
+    _add_lens(data, job)
 
     frames = np.arange(-1, job.num_frames + 1)
     entity.rotation_mode = "QUATERNION"
@@ -46,6 +47,16 @@ def add_camera(job: RenderJob) -> None:
     # both shifts are in image widths; up and left in the image are positive and negative
     animate(data, "shift_x", frames, (width / 2 - K[:, 0, 2]) / width)
     animate(data, "shift_y", frames, (K[:, 1, 2] - height / 2) / (aspect * width))
+
+
+def _add_lens(data: Any, job: RenderJob) -> None:
+    """Open the lens and pull the focus, if the job has depth of field."""
+    data.dof.use_dof = job.f_number is not None
+    if job.f_number is None or job.focus_distance is None:
+        return
+    # Blender takes the opening from its own focal length, which is for film 36 mm *wide*.
+    data.dof.aperture_fstop = job.f_number * max(job.camera.width, job.camera.height) / job.camera.width
+    animate(data, "dof.focus_distance", np.arange(-1, job.num_frames + 1), job.focus_distance)
 
 
 def _continuous(quaternions: NDArray[np.float64]) -> NDArray[np.float64]:

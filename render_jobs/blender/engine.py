@@ -79,7 +79,7 @@ def render(
 def _writers(job: RenderJob, raw: RawFrame) -> dict[str, Writer]:
     writers: dict[str, Writer] = {}
     if raw.rgb is not None:
-        writers["rgb"] = picture_writer(raw.rgb, job.image_format)
+        writers["rgb"] = picture_writer(raw.rgb, job, raw.frame)
     if raw.labels is not None:
         for name, values in read_labels(raw.labels, job, raw.frame).items():
             writers[name] = label_writer(name, values, job.max_track_id)

@@ -3,6 +3,9 @@
 Two view layers are rendered in one go: ``beauty`` makes the picture; ``labels`` takes one sample at the
 centre of every pixel, so that mask, depth, normal and flow tell of one and the same surface, without
 antialiasing or blur. The second layer costs about as much as one more sample a pixel.
+
+Motion blur is switched off for the second layer. Depth of field is a property of the camera and not of a
+layer, so with it the two layers are rendered one after the other, some frames at a time.
 """
 
 from __future__ import annotations
@@ -27,6 +30,9 @@ from render_jobs.passes import LABEL_PASSES
 BEAUTY_LAYER = "beauty"
 LABEL_LAYER = "labels"
 VIEW_TRANSFORM = {"standard": ("Standard", "None"), "agx": ("AgX", "AgX - Medium High Contrast")}
+LENS_BLOCK = 8
+"""Frames rendered as pictures, then as labels, where depth of field keeps the two apart."""
+
 ALPHA_SEEN = 0.5
 """A surface counts as seen, for the labels, from this opacity on."""
 
@@ -101,12 +107,15 @@ def render_frames(
     wants_labels = any(name in LABEL_PASSES for name in job.passes)
     scene.render.filepath = str(scratch / "raw_")
 
+    apart = job.f_number is not None and wants_rgb and wants_labels
+    layers = {BEAUTY_LAYER: wants_rgb, LABEL_LAYER: wants_labels}
+
     def picture_path(frame: int) -> Path:
         return scratch / f"rgb_{frame:06d}.bmp"
 
     def keep_picture(rendered: Any, *_: object) -> None:
         try:
-            if wants_rgb:
+            if rendered.view_layers[BEAUTY_LAYER].use:
                 _save_picture(rendered, picture_path(rendered.frame_current))
         except BaseException as error:
             abort(error)
@@ -115,8 +124,10 @@ def render_frames(
         try:
             frame = rendered.frame_current
             raw = Path(rendered.render.frame_path(frame=frame))
-            if not wants_labels:
+            if not rendered.view_layers[LABEL_LAYER].use:
                 raw.unlink()
+                if apart:
+                    return
             on_frame(
                 RawFrame(frame, picture_path(frame) if wants_rgb else None, raw if wants_labels else None)
             )
@@ -126,19 +137,25 @@ def render_frames(
     bpy.app.handlers.render_post.append(keep_picture)
     bpy.app.handlers.render_write.append(finish)
     try:
-        for start, stop in _runs(frames):
+        for start, stop in _runs(frames, LENS_BLOCK if apart else None):
             scene.frame_start, scene.frame_end = start, stop - 1
-            bpy.ops.render.render(animation=True)
+            for used in ([BEAUTY_LAYER], [LABEL_LAYER]) if apart else ([*layers],):
+                for name, wanted in layers.items():
+                    scene.view_layers[name].use = wanted and name in used
+                scene.camera.data.dof.use_dof = (
+                    job.f_number is not None and BEAUTY_LAYER in used and wants_rgb
+                )
+                bpy.ops.render.render(animation=True)
     finally:
         bpy.app.handlers.render_post.remove(keep_picture)
         bpy.app.handlers.render_write.remove(finish)
 
 
-def _runs(frames: Iterable[int]) -> list[tuple[int, int]]:
-    """Ascending numbers as half-open ranges."""
+def _runs(frames: Iterable[int], longest: int | None) -> list[tuple[int, int]]:
+    """Ascending numbers as half-open ranges of at most ``longest``."""
     runs: list[tuple[int, int]] = []
     for frame in frames:
-        if runs and runs[-1][1] == frame:
+        if runs and runs[-1][1] == frame and frame - runs[-1][0] != longest:
             runs[-1] = (runs[-1][0], frame + 1)
         else:
             runs.append((frame, frame + 1))
@@ -161,8 +178,6 @@ def _set_layers(job: RenderJob) -> None:
     labels.use_pass_object_index = "mask" in job.passes
     labels.use_pass_normal = "normal" in job.passes
     labels.use_pass_vector = "flow" in job.passes
-    beauty.use = "rgb" in job.passes
-    labels.use = any(name in LABEL_PASSES for name in job.passes)
 
 
 def _set_output(job: RenderJob) -> None:

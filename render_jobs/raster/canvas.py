@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from OpenGL import GL
 from PIL import Image
+from scipy.spatial.transform import Rotation
 
 from render_jobs.colour import linear
 from render_jobs.errors import RenderJobError
@@ -63,12 +64,19 @@ class Canvas:
         # row 0 of our buffers is the top of the image, so that windings appear mirrored
         GL.glFrontFace(GL.GL_CW)
 
-    def set_frame(self, frame: int) -> None:
-        """Bring the vertices of a frame to the card."""
+    def set_frame(self, frame: int, shift: float = 0.0, lens: tuple[float, float] = (0.0, 0.0)) -> None:
+        """Bring the vertices of a frame to the card, and set the camera.
+
+        Args:
+            frame: its number.
+            shift: time from the frame, −½ … ½ of the time to the next, for motion blur.
+            lens: point of the lens to look through, in the unit disc, for depth of field.
+        """
         for drawn in self._drawn:
             if drawn.surface.mesh.animated:
-                _send(drawn, frame)
+                _send(drawn, frame, shift)
         self._now = frame + 1  # row of the camera arrays, which start at frame −1
+        self._eye_K, self._eye_pose = moved_camera(self._job, frame, shift, lens)
 
     def labels(self) -> tuple[Floats, Floats, Floats]:
         """Id and depth ``(H, W, 2)`` (depth 0: no hit), normals ``(H, W, 3)`` and flow ``(H, W, 2)``."""
@@ -111,14 +119,14 @@ class Canvas:
         path = surface.mesh.material.base_color_texture
         texture = None if path is None else self._textures(path)
         drawn = _Drawn(surface, gl.Geometry(surface.triangles, surface.uv), texture)
-        _send(drawn, 0)
+        _send(drawn, 0, 0.0)
         return drawn
 
     def _set_camera(self, program: gl.Program) -> None:
         camera = self._job.camera
-        program.matrix("world_to_camera_now", np.linalg.inv(self._pose[self._now]))
+        program.matrix("world_to_camera_now", np.linalg.inv(self._eye_pose))
         program.matrix("world_to_camera_next", np.linalg.inv(self._pose[self._now + 1]))
-        program.matrix("projection", projection(self._K[self._now], camera.width, camera.height))
+        program.matrix("projection", projection(self._eye_K, camera.width, camera.height))
         program.matrix("world_to_shadow", self._to_shadow)
 
     def _draw(self, program: gl.Program, drawn: _Drawn) -> None:
@@ -145,7 +153,7 @@ class Canvas:
 
     def _set_lights(self) -> None:
         lights, picture = self._lights, self._picture
-        picture.vectors("eye", self._pose[self._now, :3, 3])
+        picture.vectors("eye", self._eye_pose[:3, 3])
         picture.vectors("ambient_above", self._surroundings.above)
         picture.vectors("ambient_below", self._surroundings.below)
         picture.integer("num_lights", len(lights.color))
@@ -165,7 +173,7 @@ class Canvas:
         GL.glClear(GL.GL_DEPTH_BUFFER_BIT)
         self._shadow.use()
         self._set_camera(self._shadow)
-        self._shadow.matrix("projection", self._to_shadow @ self._pose[self._now])
+        self._shadow.matrix("projection", self._to_shadow @ self._eye_pose)
         for drawn in self._drawn:
             self._shadow.integer("uses_alpha", drawn.surface.mesh.material.alpha_mode != "opaque")
             self._draw(self._shadow, drawn)
@@ -180,7 +188,7 @@ class Canvas:
 
     def _draw_backdrop(self) -> None:
         self._backdrop.use()
-        pixel_to_world = self._pose[self._now, :3, :3] @ np.linalg.inv(self._K[self._now])
+        pixel_to_world = self._eye_pose[:3, :3] @ np.linalg.inv(self._eye_K)
         self._backdrop.matrix("pixel_to_world", pixel_to_world)
         gl.bind_texture(ENVIRONMENT_UNIT, self._environment)
         self._backdrop.integer("environment", ENVIRONMENT_UNIT)
@@ -210,9 +218,36 @@ def shadow_matrix(towards: Floats, centre: NDArray[np.float64]) -> NDArray[np.fl
     return matrix
 
 
-def _send(drawn: _Drawn, frame: int) -> None:
+def moved_camera(
+    job: RenderJob, frame: int, shift: float, lens: tuple[float, float]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """``K`` and ``T_world_camera`` at a time beside a frame, seen through a point of the lens.
+
+    The eye moves on the lens, and the image with it, so that what lies in the plane of focus stays in place.
+    """
+    K, pose = job.camera_with_neighbours()
+    here, there = frame + 1, frame + 1 + (1 if shift > 0 else -1)
+    share = abs(shift)
+    eye_K = (1 - share) * K[here] + share * K[there]
+    eye_pose = pose[here].copy()
+    if share:
+        turn = Rotation.from_matrix(pose[here, :3, :3].T @ pose[there, :3, :3]).as_rotvec()
+        eye_pose[:3, :3] = pose[here, :3, :3] @ Rotation.from_rotvec(share * turn).as_matrix()
+        eye_pose[:3, 3] += share * (pose[there, :3, 3] - pose[here, :3, 3])
+    if job.focus_distance is not None:
+        offset = job.apertures[here] / 2 * np.array(lens)
+        eye_pose[:3, 3] += eye_pose[:3, :2] @ offset
+        eye_K[:2, 2] += eye_K[[0, 1], [0, 1]] * offset / job.focus_distance[here]
+    return eye_K, eye_pose
+
+
+def _send(drawn: _Drawn, frame: int, shift: float) -> None:
     surface = drawn.surface
-    drawn.geometry.update(surface.positions(frame), surface.positions(frame + 1), surface.normals(frame))
+    now = surface.positions(frame)
+    if shift:
+        beside = surface.positions(frame + (1 if shift > 0 else -1))
+        now = (now + np.float32(abs(shift)) * (beside - now)).astype(np.float32)
+    drawn.geometry.update(now, surface.positions(frame + 1), surface.normals(frame))
 
 
 def _load_texture(path: Path) -> int:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +18,14 @@ from render_jobs.job import RenderJob
 from render_jobs.optics import flow_at_infinity
 from render_jobs.passes import LABEL_PASSES
 from render_jobs.raster.context import open_context
+
+if TYPE_CHECKING:
+    from render_jobs.raster.canvas import Canvas
+
+FEWEST_MOMENTS, MOST_MOMENTS = 16, 48
+"""Pictures drawn for one with blur or depth of field; in between as many as the quality has samples."""
+
+GOLDEN_ANGLE = np.pi * (3 - 5**0.5)
 
 WHITE = 4.0
 """Linear light that becomes white under the ``agx`` tone: two stops of highlights are kept."""
@@ -36,8 +44,7 @@ def render(
 ) -> None:
     """Render frames of a job by OpenGL; arguments as in :func:`render_jobs.blender.engine.render`.
 
-    The driver chooses the device, so ``device`` does not matter; nothing is written to ``scratch``; motion
-    blur is not drawn.
+    The driver chooses the device, so ``device`` does not matter; nothing is written to ``scratch``.
 
     Raises:
         RenderJobError: a texture cannot be read.
@@ -56,7 +63,7 @@ def render(
             for name, values in _labels(job, canvas.labels(), frame).items():
                 writers[name] = label_writer(name, values, job.max_track_id)
         if "rgb" in job.passes:
-            writers["rgb"] = picture_writer(_picture(job, canvas.picture()), job.image_format)
+            writers["rgb"] = picture_writer(_picture(job, _exposed(canvas, job, frame)), job, frame)
         publish_frame(out, frame, writers, job.image_format)
         on_frame(frame, time.perf_counter() - began, time.process_time() - cpu_began)
 
@@ -74,6 +81,33 @@ def _labels(job: RenderJob, drawn: tuple[NDArray[np.float32], ...], frame: int) 
         "flow": np.where(hit[..., None], flow, beyond),
     }
     return {name: values for name, values in found.items() if name in job.passes}
+
+
+def _exposed(canvas: Canvas, job: RenderJob, frame: int) -> NDArray[np.float32]:
+    """Linear light ``(H, W, 3)``: the mean over moments of the exposure and points of the lens."""
+    if job.shutter == 0.0 and job.f_number is None:
+        return canvas.picture()
+    moments = exposure_samples(min(max(job.quality.samples, FEWEST_MOMENTS), MOST_MOMENTS))
+    total = np.zeros((job.camera.height, job.camera.width, 3), np.float32)
+    for moment, lens in moments:
+        canvas.set_frame(frame, moment * job.shutter, lens)
+        total += canvas.picture()
+    return total / np.float32(len(moments))
+
+
+def exposure_samples(count: int) -> list[tuple[float, tuple[float, float]]]:
+    """Moments −½ … ½ of the exposure and points in the unit disc, each spread evenly, in no relation.
+
+    The points are those of a sunflower; the moments come in the order of binary numbers read backwards.
+    """
+    index = np.arange(count)
+    radius, angle = np.sqrt((index + 0.5) / count), index * GOLDEN_ANGLE
+    rank = np.argsort(np.argsort([int(f"{i:08b}"[::-1], 2) for i in range(count)]))
+    times = (rank + 0.5) / count - 0.5
+    return [
+        (float(t), (float(x), float(y)))
+        for t, x, y in zip(times, radius * np.cos(angle), radius * np.sin(angle), strict=True)
+    ]
 
 
 def _picture(job: RenderJob, light: NDArray[np.float32]) -> Image.Image:

@@ -186,22 +186,3 @@ def test_cut_alpha_placements_sides_and_mixed_faces(tmp_path: Path, engine: str)
     np.testing.assert_allclose(depth[mask == 1], 4.0, atol=1e-4)
     np.testing.assert_allclose(depth[mask == 4], 7.0, atol=1e-4)
     assert not (folder / "out" / "rgb").exists(), "a pass that was not asked for"
-
-
-@pytest.mark.blender
-def test_blur_softens_the_picture_and_leaves_the_labels_sharp(tmp_path: Path) -> None:
-    fast = Mesh("fast", moving(upright(0.49, [0.0, 0.0, 1.0]), [0.6, 0, 0], 1), SQUARE_FACES, track_id=5)
-    path = camera([[0.0, -4.0, 1.0]], [0.0, 0.0, 1.0], [100.0], [[48.0, 32.0]])
-    white = Environment(color=(1.0, 1.0, 1.0), backdrop=(0.0, 0.0, 0.0))
-    job = RenderJob(
-        path, (fast,), passes=ALL, shutter=0.5, image_format="png", environment=white, tone="standard",
-        quality=Quality(name="test", samples=64, denoise="off"),
-    )  # fmt: skip
-    folder = render(job, tmp_path / "job", "cycles")
-    found, expected = rendered_frame(folder, 0), expected_frame(job, 0)
-    np.testing.assert_array_equal(found.mask, expected.mask)
-    np.testing.assert_allclose(found.flow[found.mask == 5], expected.flow[found.mask == 5], atol=0.01)
-    row = read_picture(folder / "out" / "rgb" / "000000.png")[32, :, 0].astype(int)
-    # 0.6 m a frame at 25 px/m, shutter open for half of it: the edge is a ramp 7.5 px wide
-    soft = ((row > row.max() * 0.1) & (row < row.max() * 0.9)).sum() / 2
-    assert 3 <= soft <= 8
