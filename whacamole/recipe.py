@@ -9,7 +9,15 @@ from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
 import yaml
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    ValidationError,
+    model_validator,
+)
 
 from whacamole.errors import RecipeError
 
@@ -38,6 +46,28 @@ def parse_people(value: object) -> object:
     return value
 
 
+def parse_span(value: object) -> object:
+    """Turn ``0.5`` or ``"0.5"`` into ``(0.5, 0.5)``, ``"0.2,0.5"`` into ``(0.2, 0.5)``."""
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        return (value, value)
+    if isinstance(value, str):
+        parts = value.split(",")
+        try:
+            numbers = [float(part) for part in parts]
+        except ValueError:
+            numbers = []
+        if len(numbers) not in (1, 2):
+            raise ValueError(f"{value!r} is neither a number nor two with a comma between, such as 0.2,0.5")
+        return (numbers[0], numbers[-1])
+    return value
+
+
+def _in_order(span: tuple[float, float]) -> tuple[float, float]:
+    if span[0] > span[1]:
+        raise ValueError(f"{span[0]:g},{span[1]:g}: the smaller number comes first")
+    return span
+
+
 def _split_commas(value: object) -> object:
     """Turn ``"arc,tracking"`` into ``("arc", "tracking")``."""
     if isinstance(value, str):
@@ -51,6 +81,14 @@ Count = Annotated[int, Field(ge=1, le=32)]
 People = Annotated[tuple[Count, Count], BeforeValidator(parse_people)]
 Millimetres = Annotated[float, Field(ge=4, le=1200)]
 FocalRange = tuple[Millimetres, Millimetres]
+Shutter = Annotated[float, Field(ge=0, le=1)]
+Stops = Annotated[float, Field(ge=-10, le=10)]
+FNumber = Annotated[float, Field(ge=0.5, le=128)]
+Levels = Annotated[float, Field(ge=0, le=64)]
+Shutters = Annotated[tuple[Shutter, Shutter], BeforeValidator(parse_span), AfterValidator(_in_order)]
+StopsSpan = Annotated[tuple[Stops, Stops], BeforeValidator(parse_span), AfterValidator(_in_order)]
+FNumbers = Annotated[tuple[FNumber, FNumber], BeforeValidator(parse_span), AfterValidator(_in_order)]
+LevelsSpan = Annotated[tuple[Levels, Levels], BeforeValidator(parse_span), AfterValidator(_in_order)]
 Size = Annotated[tuple[Side, Side], BeforeValidator(parse_size)]
 
 
@@ -75,6 +113,18 @@ class Recipe(BaseModel):
     focal_mm: FocalRange = Field(
         (24.0, 50.0),
         description="shortest and longest lens, as focal length on 36 mm film along the longer side",
+    )
+    motion_blur: Shutters = Field(
+        (0.0, 0.0), description="share of the frame time that the shutter is open, drawn between two numbers"
+    )
+    f_number: FNumbers | None = Field(
+        None, description="f-number of the lens, drawn between two numbers; none: sharp everywhere"
+    )
+    exposure: StopsSpan = Field(
+        (0.0, 0.0), description="stops over the exposure that suits the stage, drawn between two numbers"
+    )
+    noise: LevelsSpan = Field(
+        (0.0, 0.0), description="sensor noise at middle grey in 8-bit levels, drawn between two numbers"
     )
     quality: Literal["draft", "standard", "high"] = Field("standard", description="render settings")
     engine: Literal["auto", "cycles", "raster"] = Field(

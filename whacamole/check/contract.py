@@ -17,6 +17,12 @@ _CAMERA = {
     "width": ("", "i"),
     "height": ("", "i"),
     "frame_index": ("T", "i"),
+    "shutter": ("", "f"),
+    "f_number": ("", "f"),
+    "focus_distance": ("T", "f"),
+    "exposure": ("", "f"),
+    "noise": ("", "f"),
+    "noise_seed": ("", "i"),
 }
 _PEOPLE = {
     "track_id": ("P", "i"),
@@ -58,7 +64,12 @@ _CONTACT = {
     "velocity_threshold": ("", "f"),
 }
 _KINDS = {"f": "f", "i": "iu", "b": "b", "U": "U"}
-_MAY_BE_INFINITE = ("contact.person_distance", "contact.ground_distance")
+_MAY_BE_INFINITE = (
+    "contact.person_distance",
+    "contact.ground_distance",
+    "camera.f_number",
+    "camera.focus_distance",
+)
 
 
 def check_contract(sequence: Sequence, report: Report) -> bool:

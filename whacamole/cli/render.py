@@ -44,6 +44,24 @@ def render(
         str | None, typer.Option(help="draft, standard or high.", show_default="standard")
     ] = None,
     engine: Annotated[str | None, typer.Option(help="auto, cycles or raster.", show_default="auto")] = None,
+    motion_blur: Annotated[
+        str | None,
+        typer.Option(
+            help="Share of the frame time that the shutter is open: 0.5, or 0.2,0.5.", show_default="0"
+        ),
+    ] = None,
+    f_number: Annotated[
+        str | None,
+        typer.Option(help="Depth of field: the lens's f-number, 2.8 or 2,5.6.", show_default="none"),
+    ] = None,
+    exposure: Annotated[
+        str | None,
+        typer.Option(help="Stops over the stage's own exposure: 0.5, or -0.5,0.5.", show_default="0"),
+    ] = None,
+    noise: Annotated[
+        str | None,
+        typer.Option(help="Sensor noise at middle grey in 8-bit levels: 4, or 0,6.", show_default="0"),
+    ] = None,
     passes: Annotated[
         str | None,
         typer.Option(
@@ -87,6 +105,7 @@ def render(
     given = {
         "motions": motions, "shots": shots, "shots_per_motion": shots_per_motion, "frames": frames,
         "people": people, "stages": stages,
+        "motion_blur": motion_blur, "f_number": f_number, "exposure": exposure, "noise": noise,
         "size": size, "fps": fps, "quality": quality, "engine": engine, "passes": passes,
         "image_format": image_format, "body_model": body_model, "seed": seed, "limit": limit,
         "allow_breaches": allow_breaches,

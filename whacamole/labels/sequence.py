@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from camera_rigs import CameraPath
 from whacamole.body import BodyModel
 from whacamole.labels.arrays import AnyArray
-from whacamole.labels.camera import camera_arrays
+from whacamole.labels.camera import Film, camera_arrays
 from whacamole.labels.contact import ContactLabels
 from whacamole.labels.ground import ContactThresholds
 from whacamole.labels.parts import BodyParts
@@ -37,6 +37,7 @@ def label_sequence(
     *,
     limits: ContactThresholds | None = None,
     parts: BodyParts | None = None,
+    film: Film | None = None,
     on_frame: Callable[[int], None] | None = None,
 ) -> SequenceLabels:
     """Label every frame of a sequence. Equal input gives equal bytes; few frames are held in memory.
@@ -48,6 +49,7 @@ def label_sequence(
         images: gives the rendered mask (and depth, if any) of a frame; called once a frame, in order.
         limits: what counts as contact.
         parts: body parts for the contact labels; by default those of the model's skinning weights.
+        film: how the pictures were exposed.
         on_frame: told after each frame.
 
     Raises:
@@ -61,7 +63,7 @@ def label_sequence(
         touched.add(frame, before, now, after)
         if on_frame is not None:
             on_frame(frame)
-    return SequenceLabels(camera_arrays(camera), seen.arrays(), touched.arrays())
+    return SequenceLabels(camera_arrays(camera, film), seen.arrays(), touched.arrays())
 
 
 def posed_frames(people: Sequence[LabelledPerson], model: BodyModel) -> Iterator[FrameVertices]:

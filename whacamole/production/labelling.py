@@ -15,6 +15,7 @@ from whacamole.body import BodyModel
 from whacamole.dataset import SequenceLayout
 from whacamole.dataset.files import write_arrays, write_json
 from whacamole.labels import FrameImages, LabelledPerson, label_sequence
+from whacamole.labels.camera import Film
 from whacamole.labels.people import WorldMesh
 from whacamole.take import Performer, Take
 
@@ -27,12 +28,14 @@ def write_labels(
     body: BodyModel,
     frames: Path,
     sequence: SequenceLayout,
+    film: Film,
     on_frame: Callable[[int], None],
 ) -> dict[str, NDArray[Any]]:
     """Write the three ``.npz`` files and ``shot.json``; return the arrays of ``people.npz``.
 
     Args:
         frames: folder of the rendered passes.
+        film: how they were exposed.
         on_frame: told after each frame.
     """
 
@@ -41,7 +44,7 @@ def write_labels(
         return FrameImages(mask, read_exr(frames / PASSES["depth"].file(frame))["Z"])
 
     people = [_labelled(person) for person in take.performers]
-    labels = label_sequence(people, body, plan.path, images, on_frame=on_frame)
+    labels = label_sequence(people, body, plan.path, images, film=film, on_frame=on_frame)
     write_arrays(sequence.camera, labels.camera)
     write_arrays(sequence.people, labels.people)
     write_arrays(sequence.contact, labels.contact)

@@ -14,7 +14,7 @@ from whacamole.dataset.files import write_arrays, write_json, write_text
 from whacamole.errors import DatasetError, WhacamoleError
 from whacamole.labels.camera import camera_arrays
 from whacamole.production.drawing import plan_svg
-from whacamole.production.filming import plan_camera
+from whacamole.production.filming import film_of, plan_camera
 from whacamole.production.sequence import take_of
 from whacamole.production.worklist import SequenceOrder, Worklist, work_of
 from whacamole.recipe import Recipe
@@ -101,7 +101,8 @@ def plan_sequence(order: SequenceOrder) -> Planned:
         return Planned(order.sequence_id, error=str(error))
     sequence = DatasetLayout(order.root).sequence(order.sequence_id)
     sequence.folder.mkdir(parents=True, exist_ok=True)
-    write_arrays(sequence.camera, camera_arrays(plan.path))
+    film = film_of(take, plan, order.recipe, order.shot_index)
+    write_arrays(sequence.camera, camera_arrays(plan.path, film))
     write_json(sequence.shot, plan.to_json())
     write_text(sequence.folder / "camera.tum", to_tum(plan.path))
     write_json(sequence.folder / "transforms.json", to_nerfstudio(plan.path))

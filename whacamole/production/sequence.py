@@ -7,18 +7,20 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from camera_rigs import Finding, Plan, PlanError
 from render_jobs import RenderJob, quality_preset, run_job
 from whacamole.body import BodyModel
 from whacamole.dataset import DatasetLayout, Sequence, SequenceLayout, write_summary
 from whacamole.errors import DatasetError, TakeError
+from whacamole.labels.camera import Film
 from whacamole.motion import read_motion
-from whacamole.production.filming import camera_neighbours, plan_camera
+from whacamole.production.filming import camera_neighbours, film_of, plan_camera
 from whacamole.production.labelling import write_labels
 from whacamole.production.preview import write_preview
 from whacamole.production.worklist import SequenceOrder, motion_checksum
 from whacamole.recipe import Recipe
-from whacamole.seeds import generator
 from whacamole.take import Take, stage_take
 
 __all__ = ["Say", "body_of", "make_sequence", "take_of"]
@@ -76,7 +78,8 @@ def _make_in(
     plan = plan_camera(take, recipe, order.shot_index)
     if plan.findings and not recipe.allow_breaches:
         raise PlanError(_breach(order, plan.findings[0]))
-    job = render_job(take, plan, order)
+    film = film_of(take, plan, recipe, order.shot_index)
+    job = render_job(take, plan, film, recipe)
     job.save(work / "job")
     say("step", name="render", frames=take.num_frames)
     run_job(
@@ -90,7 +93,9 @@ def _make_in(
     shutil.rmtree(sequence.folder, ignore_errors=True)
     sequence.folder.mkdir(parents=True)
     rendered = work / "job" / "out"
-    labels = write_labels(take, plan, body, rendered, sequence, lambda frame: say("labelled", index=frame))
+    labels = write_labels(
+        take, plan, body, rendered, sequence, film, lambda frame: say("labelled", index=frame)
+    )
     for name in job.passes:
         (rendered / name).rename(sequence.folder / name)
     facts = _facts(order, take, plan, body, labels)
@@ -135,22 +140,25 @@ def _breach(order: SequenceOrder, finding: Finding) -> str:
     )
 
 
-def render_job(take: Take, plan: Plan, order: SequenceOrder) -> RenderJob:
+def render_job(take: Take, plan: Plan, film: Film, recipe: Recipe) -> RenderJob:
     """Return the job that films ``take`` by ``plan``."""
-    recipe = order.recipe
+    focus = film.focus_distance
     people = tuple(mesh for performer in take.performers for mesh in performer.meshes)
-    noise = generator(recipe.seed, take.motion.id, order.shot_index, "sampling")
     return RenderJob(
         camera=plan.path,
         camera_neighbours=camera_neighbours(plan.path),
         meshes=take.stage.meshes + people,
         lights=take.stage.lights,
         environment=take.stage.environment,
-        exposure=take.stage.exposure,
+        shutter=film.shutter,
+        f_number=None if focus is None else film.f_number,
+        focus_distance=None if focus is None else np.pad(focus, 1, mode="edge"),
+        exposure=film.exposure,
+        noise=film.noise,
         quality=quality_preset(recipe.quality),
         passes=recipe.passes,
         image_format=recipe.image_format,
-        seed=int(noise.integers(2**31)),
+        seed=film.noise_seed,
     )
 
 
