@@ -54,19 +54,24 @@ def publish_frame(out: Path, frame: int, writers: Mapping[str, Writer], image_fo
         beside.replace(target)
 
 
-def picture_writer(source: Path | Image.Image, job: RenderJob, frame: int) -> Writer:
+def read_picture(path: Path) -> Image.Image:
+    """The picture in a file, held in memory."""
+    with Image.open(path) as image:
+        return image.convert("RGB")
+
+
+def picture_writer(picture: Image.Image, job: RenderJob, frame: int) -> Writer:
     """What puts the job's noise on a display-ready picture and encodes it, without any metadata.
 
     JPEG keeps the full resolution of the colours.
     """
 
     def write(path: Path) -> None:
-        with source if isinstance(source, Image.Image) else Image.open(source) as image:
-            finished = with_noise(image.convert("RGB"), job.noise, job.seed, frame)
-            if job.image_format == "jpg":
-                finished.save(path, format="JPEG", quality=JPEG_QUALITY, subsampling=0)
-            else:
-                finished.save(path, format="PNG", compress_level=PNG_LEVEL)
+        finished = with_noise(picture, job.noise, job.seed, frame)
+        if job.image_format == "jpg":
+            finished.save(path, format="JPEG", quality=JPEG_QUALITY, subsampling=0)
+        else:
+            finished.save(path, format="PNG", compress_level=PNG_LEVEL)
 
     return write
 

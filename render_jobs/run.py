@@ -14,6 +14,7 @@ from typing import Any
 from render_jobs.devices import parse_device
 from render_jobs.errors import EngineError, RenderJobError, WorkerError
 from render_jobs.images import PARTIAL_FOLDER, is_complete
+from render_jobs.profile import Profile
 from render_jobs.protocol import BAD_JOB, ENGINES, LOG_FILE, NO_ENGINE
 from render_jobs.storage import OUTPUT_FOLDER, JobRecord, read_record
 from render_jobs.watch import ChildEnd, describe_end, watch_child
@@ -33,6 +34,7 @@ class JobResult:
         devices: what rendered, for people to read; empty where nothing had to be rendered.
         peak_memory_mb: largest resident memory of the child that was seen.
         log: the job's log.
+        profile: seconds by phase over all children (:mod:`render_jobs.profile`).
     """
 
     frames: int
@@ -42,6 +44,7 @@ class JobResult:
     devices: str
     peak_memory_mb: float
     log: Path
+    profile: dict[str, float]
 
 
 def run_job(
@@ -102,6 +105,7 @@ def run_job(
         devices=progress.devices,
         peak_memory_mb=peak,
         log=log,
+        profile=progress.profile.seconds,
     )
 
 
@@ -155,6 +159,7 @@ class _Progress:
         self.frame_cpu_seconds: dict[int, float] = {}
         self.devices = ""
         self.error = ""
+        self.profile = Profile()
         self._on_frame = on_frame
 
     def hear(self, event: dict[str, Any]) -> None:
@@ -167,6 +172,8 @@ class _Progress:
                 self.frame_cpu_seconds[event["frame"]] = event["cpu_seconds"]
                 if self._on_frame is not None:
                     self._on_frame(event["frame"])
+            case "profile":
+                self.profile.merge(event["seconds"])
             case "error":
                 self.error = event["message"]
 

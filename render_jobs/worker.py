@@ -1,7 +1,8 @@
 """One job, one process: ``python -m render_jobs.worker JOB_FOLDER``.
 
-Prints one JSON object a line to stdout: ``start``, ``frame``, ``done`` or ``error``. All else that Blender
-and Python print goes to ``render.log`` in the job folder. Frames already there are not rendered again.
+Prints one JSON object a line to stdout: ``start``, ``frame``, ``profile``, ``done`` or ``error``. All else
+that Blender and Python print goes to ``render.log`` in the job folder. Frames already there are not rendered
+again.
 The exit status is 0 when every frame is there, ``BAD_JOB`` or ``NO_ENGINE`` where another try cannot
 help, else 1.
 """
@@ -26,6 +27,7 @@ from render_jobs.errors import EngineError, RenderJobError
 from render_jobs.images import is_complete
 from render_jobs.job import RenderJob
 from render_jobs.processes import die_with_parent
+from render_jobs.profile import IMPORTING, LOADING, STARTING, Profile, since_start
 from render_jobs.protocol import BAD_JOB, ENGINES, FAILED, LOG_FILE, NO_ENGINE
 from render_jobs.storage import OUTPUT_FOLDER
 
@@ -75,10 +77,13 @@ def main(arguments: Sequence[str] | None = None) -> NoReturn:
     if options.parent:
         die_with_parent(options.parent)
     reporter = Reporter(_take_over_output(options.job))
+    profile = Profile()
+    profile.add(STARTING, since_start())
     try:
-        _work(options, reporter)
+        _work(options, reporter, profile)
     except BaseException as error:
         reporter.abort(error)
+    reporter.send("profile", seconds={name: round(value, 4) for name, value in profile.seconds.items()})
     reporter.send("done")
     leave(0)
 
@@ -101,8 +106,9 @@ def _frame_range(text: str) -> range:
     return range(int(first), int(end))
 
 
-def _work(options: argparse.Namespace, reporter: Reporter) -> None:
-    job = RenderJob.load(options.job)
+def _work(options: argparse.Namespace, reporter: Reporter, profile: Profile) -> None:
+    with profile.phase(LOADING):
+        job = RenderJob.load(options.job)
     device = parse_device(options.device)
     out = options.job / OUTPUT_FOLDER
     wanted = options.frames or range(job.num_frames)
@@ -117,7 +123,9 @@ def _work(options: argparse.Namespace, reporter: Reporter) -> None:
     scratch = options.job / f"scratch-{os.getpid()}"
     scratch.mkdir()
     try:
-        importlib.import_module(ENGINES[options.engine]).render(
+        with profile.phase(IMPORTING):
+            engine = importlib.import_module(ENGINES[options.engine])
+        engine.render(
             job=job,
             frames=missing,
             out=out,
@@ -129,6 +137,7 @@ def _work(options: argparse.Namespace, reporter: Reporter) -> None:
                 "frame", frame=frame, seconds=round(seconds, 4), cpu_seconds=round(cpu_seconds, 4)
             ),
             abort=reporter.abort,
+            profile=profile,
         )
     finally:
         shutil.rmtree(scratch, ignore_errors=True)

@@ -10,6 +10,7 @@ layer, so with it the two layers are rendered one after the other, some frames a
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -26,6 +27,7 @@ from render_jobs.blender.materials import build_material
 from render_jobs.devices import DeviceChoice
 from render_jobs.job import RenderJob
 from render_jobs.passes import LABEL_PASSES
+from render_jobs.profile import WRITING, Profile
 
 BEAUTY_LAYER = "beauty"
 LABEL_LAYER = "labels"
@@ -91,6 +93,7 @@ def render_frames(
     scratch: Path,
     on_frame: Callable[[RawFrame], None],
     abort: Callable[[BaseException], NoReturn],
+    profile: Profile,
 ) -> None:
     """Render frames of the built scene; consecutive ones in one animation render.
 
@@ -101,6 +104,7 @@ def render_frames(
         on_frame: called in between frames, while Blender waits; it owns the files it is given.
         abort: called on an error between frames. Blender would print the exception and go on with the next
             frame, so this must end the process.
+        profile: where the time of writing raw frames is counted.
     """
     scene: Any = bpy.context.scene
     wants_rgb = "rgb" in job.passes
@@ -113,7 +117,11 @@ def render_frames(
     def picture_path(frame: int) -> Path:
         return scratch / f"rgb_{frame:06d}.bmp"
 
+    rendered_at = 0.0
+
     def keep_picture(rendered: Any, *_: object) -> None:
+        nonlocal rendered_at
+        rendered_at = time.perf_counter()
         try:
             if rendered.view_layers[BEAUTY_LAYER].use:
                 _save_picture(rendered, picture_path(rendered.frame_current))
@@ -122,6 +130,7 @@ def render_frames(
 
     def finish(rendered: Any, *_: object) -> None:
         try:
+            profile.add(WRITING, time.perf_counter() - rendered_at)
             frame = rendered.frame_current
             raw = Path(rendered.render.frame_path(frame=frame))
             if not rendered.view_layers[LABEL_LAYER].use:

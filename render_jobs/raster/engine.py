@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -13,14 +13,18 @@ from PIL import Image
 
 from render_jobs.colour import encoded
 from render_jobs.devices import DeviceChoice
-from render_jobs.images import Writer, label_writer, picture_writer, publish_frame
+from render_jobs.encoding import Encoder, OnFrame
+from render_jobs.images import Writer, label_writer, picture_writer
 from render_jobs.job import RenderJob
 from render_jobs.optics import flow_at_infinity
 from render_jobs.passes import LABEL_PASSES
+from render_jobs.profile import BUILDING, DRAWING, Profile
 from render_jobs.raster.context import open_context
 
 if TYPE_CHECKING:
     from render_jobs.raster.canvas import Canvas
+
+Floats = NDArray[np.float32]
 
 FEWEST_MOMENTS, MOST_MOMENTS = 16, 48
 """Pictures drawn for one with blur or depth of field; in between as many as the quality has samples."""
@@ -39,8 +43,9 @@ def render(
     device: DeviceChoice,
     threads: int,
     on_start: Callable[[str], None],
-    on_frame: Callable[[int, float, float], None],
+    on_frame: OnFrame,
     abort: Callable[[BaseException], NoReturn],
+    profile: Profile,
 ) -> None:
     """Render frames of a job by OpenGL; arguments as in :func:`render_jobs.blender.engine.render`.
 
@@ -50,25 +55,34 @@ def render(
         RenderJobError: a texture cannot be read.
         EngineError: there is no OpenGL, or it cannot show the job.
     """
-    devices = open_context(threads)
-    from render_jobs.raster.canvas import Canvas  # needs the context
+    with profile.phase(BUILDING):
+        devices = open_context(threads)
+        from render_jobs.raster.canvas import Canvas  # needs the context
 
-    canvas = Canvas(job)
+        canvas = Canvas(job)
     on_start(devices)
-    for frame in frames:
-        began, cpu_began = time.perf_counter(), time.process_time()
-        canvas.set_frame(frame)
-        writers: dict[str, Writer] = {}
-        if any(name in LABEL_PASSES for name in job.passes):
-            for name, values in _labels(job, canvas.labels(), frame).items():
-                writers[name] = label_writer(name, values, job.max_track_id)
-        if "rgb" in job.passes:
-            writers["rgb"] = picture_writer(_picture(job, _exposed(canvas, job, frame)), job, frame)
-        publish_frame(out, frame, writers, job.image_format)
-        on_frame(frame, time.perf_counter() - began, time.process_time() - cpu_began)
+    with Encoder(out, job.image_format, on_frame, abort, profile) as encoder:
+        for frame in frames:
+            with profile.phase(DRAWING):
+                canvas.set_frame(frame)
+                drawn = canvas.labels() if any(name in LABEL_PASSES for name in job.passes) else None
+                light = _exposed(canvas, job, frame) if "rgb" in job.passes else None
+            encoder.put(frame, partial(_writers, job, frame, drawn, light))
 
 
-def _labels(job: RenderJob, drawn: tuple[NDArray[np.float32], ...], frame: int) -> dict[str, NDArray[Any]]:
+def _writers(
+    job: RenderJob, frame: int, drawn: tuple[Floats, ...] | None, light: Floats | None
+) -> dict[str, Writer]:
+    writers: dict[str, Writer] = {}
+    if drawn is not None:
+        for name, values in _labels(job, drawn, frame).items():
+            writers[name] = label_writer(name, values, job.max_track_id)
+    if light is not None:
+        writers["rgb"] = picture_writer(_picture(job, light), job, frame)
+    return writers
+
+
+def _labels(job: RenderJob, drawn: tuple[Floats, ...], frame: int) -> dict[str, NDArray[Any]]:
     surface, normal, flow = drawn
     hit = surface[..., 1] > 0
     K, pose = job.camera_with_neighbours()
@@ -83,7 +97,7 @@ def _labels(job: RenderJob, drawn: tuple[NDArray[np.float32], ...], frame: int) 
     return {name: values for name, values in found.items() if name in job.passes}
 
 
-def _exposed(canvas: Canvas, job: RenderJob, frame: int) -> NDArray[np.float32]:
+def _exposed(canvas: Canvas, job: RenderJob, frame: int) -> Floats:
     """Linear light ``(H, W, 3)``: the mean over moments of the exposure and points of the lens."""
     if job.shutter == 0.0 and job.f_number is None:
         return canvas.picture()
@@ -110,7 +124,7 @@ def exposure_samples(count: int) -> list[tuple[float, tuple[float, float]]]:
     ]
 
 
-def _picture(job: RenderJob, light: NDArray[np.float32]) -> Image.Image:
+def _picture(job: RenderJob, light: Floats) -> Image.Image:
     exposed = light * 2.0**job.exposure
     if job.tone == "agx":  # highlights roll off instead of clipping (Reinhard 2002, extended)
         exposed = exposed * (1.0 + exposed / WHITE**2) / (1.0 + exposed)

@@ -91,6 +91,9 @@ def render(
         Literal["auto", "cpu", "gpu"],
         typer.Option(help="Where to render: auto takes a GPU where Blender finds one."),
     ] = "auto",
+    profile: Annotated[
+        bool, typer.Option("--profile", help="End with a table of where the time went.")
+    ] = False,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="List what would be made and stop.")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print errors only.")] = False,
     json_output: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
@@ -119,5 +122,5 @@ def render(
         dry_run=dry_run,
         quiet=quiet or json_output,
     )
-    result.report(quiet=quiet, as_json=json_output)
+    result.report(quiet=quiet, as_json=json_output, profile=profile)
     raise typer.Exit(0 if result.complete else 1)

@@ -72,6 +72,11 @@ class DatasetLayout:
         """Unfinished sequences; nothing in here belongs to the dataset."""
         return self.root / ".work"
 
+    @property
+    def profiles(self) -> Path:
+        """A file for each sequence: where the time went that it took."""
+        return self.work / "profiles"
+
     def sequence(self, sequence_id: str) -> SequenceLayout:
         """Return the place of a finished sequence."""
         return SequenceLayout(self.sequences / _checked(sequence_id))

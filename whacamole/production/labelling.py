@@ -29,6 +29,7 @@ def write_labels(
     frames: Path,
     sequence: SequenceLayout,
     film: Film,
+    ready: Callable[[int], None],
     on_frame: Callable[[int], None],
 ) -> dict[str, NDArray[Any]]:
     """Write the three ``.npz`` files and ``shot.json``; return the arrays of ``people.npz``.
@@ -36,10 +37,12 @@ def write_labels(
     Args:
         frames: folder of the rendered passes.
         film: how they were exposed.
+        ready: called before the images of a frame are read; returns when they are there.
         on_frame: told after each frame.
     """
 
     def images(frame: int) -> FrameImages:
+        ready(frame)
         mask = np.asarray(Image.open(frames / PASSES["mask"].file(frame)))
         return FrameImages(mask, read_exr(frames / PASSES["depth"].file(frame))["Z"])
 

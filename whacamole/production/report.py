@@ -10,6 +10,7 @@ from rich.table import Table
 
 from whacamole.dataset import DatasetLayout, read_summary
 from whacamole.motion import FPS
+from whacamole.production.profiling import profile_as_dict, profile_table, read_profiles
 from whacamole.production.worklist import Worklist
 
 __all__ = ["Production"]
@@ -42,28 +43,41 @@ class Production:
         """Whether every sequence is there and every file could be used."""
         return not self.worklist.refused and (self.dry_run or not self.worklist.open)
 
+    @property
+    def finished(self) -> list[str]:
+        """Ids of the sequences asked for that are there, sorted."""
+        return sorted(self.worklist.finished & {order.sequence_id for order in self.worklist.orders})
+
     def as_dict(self) -> dict[str, Any]:
         """Return plain values for JSON."""
         return {
             "dataset": str(self.root),
             "sequences": [order.sequence_id for order in self.worklist.orders],
-            "finished": sorted(
-                self.worklist.finished & {order.sequence_id for order in self.worklist.orders}
-            ),
+            "finished": self.finished,
             "failed": self.failures,
             "refused": {str(file.path): file.problem for file in self.worklist.refused},
             "seconds": round(self.seconds, 3),
             "complete": self.complete,
         }
 
-    def report(self, *, quiet: bool = False, as_json: bool = False) -> None:
-        """Print the result: a table and what to do next, or JSON; errors in any case."""
+    def report(self, *, quiet: bool = False, as_json: bool = False, profile: bool = False) -> None:
+        """Print the result: a table and what to do next, or JSON; errors in any case.
+
+        Args:
+            quiet: print errors only.
+            as_json: print JSON alone.
+            profile: tell where the time went, in a table or in the JSON.
+        """
+        profiles = read_profiles(self.root, self.finished) if profile else {}
         if as_json:
-            Console(soft_wrap=True).print_json(json.dumps(self.as_dict()))
+            more = {"profile": profile_as_dict(profiles)} if profile else {}
+            Console(soft_wrap=True).print_json(json.dumps(self.as_dict() | more))
             return
         errors = Console(stderr=True, soft_wrap=True, highlight=False)
         if not quiet:
             self._print_table(Console())
+        if profiles:
+            Console().print(profile_table(profiles))
         for file in self.worklist.refused:
             errors.print(f"refused: {file.problem}", markup=False)
         for error in self.failures.values():

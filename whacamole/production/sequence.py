@@ -11,6 +11,7 @@ import numpy as np
 
 from camera_rigs import Finding, Plan, PlanError
 from render_jobs import RenderJob, quality_preset, run_job
+from render_jobs.profile import STARTING, Profile, since_start
 from whacamole.body import BodyModel
 from whacamole.dataset import DatasetLayout, Sequence, SequenceLayout, write_summary
 from whacamole.errors import DatasetError, TakeError
@@ -18,7 +19,9 @@ from whacamole.labels.camera import Film
 from whacamole.motion import read_motion
 from whacamole.production.filming import camera_neighbours, film_of, plan_camera
 from whacamole.production.labelling import write_labels
+from whacamole.production.overlap import beside
 from whacamole.production.preview import write_preview
+from whacamole.production.profiling import SequenceProfile
 from whacamole.production.worklist import SequenceOrder, motion_checksum
 from whacamole.recipe import Recipe
 from whacamole.take import Take, stage_take
@@ -54,6 +57,8 @@ def make_sequence(order: SequenceOrder, say: Say, *, threads: int, device: str) 
         DatasetError: another process is making this very sequence.
     """
     layout = DatasetLayout(order.root)
+    profile = Profile()
+    profile.add(STARTING, since_start())
     final = layout.sequence(order.sequence_id)
     work = layout.work_of(order.sequence_id)
     work.mkdir(parents=True, exist_ok=True)
@@ -61,46 +66,63 @@ def make_sequence(order: SequenceOrder, say: Say, *, threads: int, device: str) 
         if final.summary.exists():
             return
         unfinished = SequenceLayout(work / "sequence")
-        _make_in(order, unfinished, work, say, threads=threads, device=device)
+        frames = _make_in(order, unfinished, work, say, profile, threads=threads, device=device)
         final.folder.parent.mkdir(exist_ok=True)
         unfinished.folder.rename(final.folder)
     shutil.rmtree(work, ignore_errors=True)
+    SequenceProfile.of(frames, since_start(), profile.seconds).save(layout, order.sequence_id)
 
 
 def _make_in(
-    order: SequenceOrder, sequence: SequenceLayout, work: Path, say: Say, *, threads: int, device: str
-) -> None:
-    """Make all files of the sequence in the folder ``sequence``."""
-    recipe, body = order.recipe, body_of(order.recipe)
+    order: SequenceOrder,
+    sequence: SequenceLayout,
+    work: Path,
+    say: Say,
+    profile: Profile,
+    *,
+    threads: int,
+    device: str,
+) -> int:
+    """Make all files of the sequence in the folder ``sequence``; return how many frames were rendered."""
+    recipe = order.recipe
     say("step", name="scene")
-    take = take_of(order, textures=work / "textures")
+    with profile.phase("take"):
+        body = body_of(recipe)
+        take = take_of(order, textures=work / "textures")
     say("step", name="plan")
-    plan = plan_camera(take, recipe, order.shot_index)
+    with profile.phase("plan"):
+        plan = plan_camera(take, recipe, order.shot_index)
     if plan.findings and not recipe.allow_breaches:
         raise PlanError(_breach(order, plan.findings[0]))
     film = film_of(take, plan, recipe, order.shot_index)
-    job = render_job(take, plan, film, recipe)
-    job.save(work / "job")
+    folder = work / "job"
+    with profile.phase("save the job"):
+        job = render_job(take, plan, film, recipe)
+        job.save(folder)
+        shutil.rmtree(sequence.folder, ignore_errors=True)
+        sequence.folder.mkdir(parents=True)
     say("step", name="render", frames=take.num_frames)
-    run_job(
-        work / "job",
-        engine=recipe.engine,
-        threads=threads,
-        device=device,
-        on_frame=lambda frame: say("frame", index=frame),
+
+    def render(on_frame: Callable[[int], None]) -> int:
+        result = run_job(folder, engine=recipe.engine, threads=threads, device=device, on_frame=on_frame)
+        profile.merge(result.profile)
+        return result.frames
+
+    frames, labels = beside(
+        folder,
+        render,
+        lambda ready, done: write_labels(take, plan, body, folder / "out", sequence, film, ready, done),
+        say,
+        take.num_frames,
+        profile,
     )
-    say("step", name="label", frames=take.num_frames)
-    shutil.rmtree(sequence.folder, ignore_errors=True)
-    sequence.folder.mkdir(parents=True)
-    rendered = work / "job" / "out"
-    labels = write_labels(
-        take, plan, body, rendered, sequence, film, lambda frame: say("labelled", index=frame)
-    )
-    for name in job.passes:
-        (rendered / name).rename(sequence.folder / name)
-    facts = _facts(order, take, plan, body, labels)
-    write_preview(Sequence(order.sequence_id, sequence, facts), body)
-    write_summary(sequence, facts)
+    with profile.phase("finish"):
+        for name in job.passes:
+            (folder / "out" / name).rename(sequence.folder / name)
+        facts = _facts(order, take, plan, body, labels)
+        write_preview(Sequence(order.sequence_id, sequence, facts), body)
+        write_summary(sequence, facts)
+    return frames
 
 
 def take_of(order: SequenceOrder, *, textures: Path | None) -> Take:
