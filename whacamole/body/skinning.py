@@ -1,8 +1,8 @@
 """Linear blend skinning with shape, expression and pose correctives (SMPL, Loper et al. 2015, eqs. 2 to 10).
 
-Every number here comes from elementwise operations and from sparse products that add in a fixed order: no
-BLAS, whose sums change with the number of threads and the size of a batch. So a frame's vertices are the
-same bits whatever frames it is posed with.
+Every number of a sparse skin comes from elementwise operations and from products that add in a fixed order:
+no BLAS, whose sums change with the number of threads and the size of a batch. So a frame's vertices are the
+same bits whatever frames it is posed with. A dense skin trades that for speed.
 """
 
 from collections.abc import Sequence
@@ -14,7 +14,7 @@ import numpy.typing as npt
 import scipy.sparse
 from scipy.spatial.transform import Rotation
 
-from whacamole.body.joints import NUM_JOINTS, tree_levels
+from whacamole.body.joints import tree_levels
 
 FloatArray = npt.NDArray[np.float64]
 Float32Array = npt.NDArray[np.float32]
@@ -34,11 +34,11 @@ class Tile:
     """What some neighbouring vertices of a model need, in the form the products want.
 
     Attributes:
-        correctives: sparse (3n, 10 + 486) float32, columns: expression, then R − I of 54 joints row by row.
+        correctives: (3n, 10 + 486) float32, columns: expression, then R − I of 54 joints row by row.
         weights: sparse (n, 55) float32.
     """
 
-    correctives: Sparse
+    correctives: Sparse | Float32Array
     weights: Sparse
 
 
@@ -49,24 +49,29 @@ class Skin:
     tiles: tuple[Tile, ...]
 
     @classmethod
-    def build(cls, expression_dirs: Float32Array, posedirs: Sparse, weights: Float32Array) -> "Skin":
-        """From expression directions (V, 3, 10), sparse pose directions (3V, 486) and weights (V, 55)."""
-        expression = scipy.sparse.csr_array(expression_dirs.reshape(-1, expression_dirs.shape[-1]))
+    def build(
+        cls, expression_dirs: Float32Array, posedirs: Sparse, weights: Float32Array, *, dense: bool = False
+    ) -> "Skin":
+        """From expression directions (V, 3, E), sparse pose directions (3V, C) and weights (V, J).
+
+        Args:
+            dense: multiply the correctives by BLAS: several times faster where few of them are zero, but the
+                last bits may differ between machines and batches.
+        """
+        expression = scipy.sparse.csr_array(expression_dirs.reshape(3 * len(weights), -1))
         correctives = scipy.sparse.hstack([expression, posedirs], format="csr", dtype=np.float32)
         correctives.sort_indices()
         blend = scipy.sparse.csr_array(weights, dtype=np.float32)
-        starts = range(0, blend.shape[0], _TILE)
-        return cls(tuple(Tile(correctives[3 * a : 3 * (a + _TILE)], blend[a : a + _TILE]) for a in starts))
+        parts = [
+            (correctives[3 * a : 3 * (a + _TILE)], blend[a : a + _TILE])
+            for a in range(0, len(weights), _TILE)
+        ]
+        return cls(tuple(Tile(part.toarray() if dense else part, share) for part, share in parts))
 
     @classmethod
     def joined(cls, skins: Sequence["Skin"]) -> "Skin":
         """Several skins as one, their vertices in order."""
         return cls(tuple(tile for skin in skins for tile in skin.tiles))
-
-    @property
-    def num_vertices(self) -> int:
-        """V."""
-        return sum(tile.weights.shape[0] for tile in self.tiles)
 
 
 def rotations(pose: FloatArray) -> FloatArray:
@@ -120,18 +125,30 @@ def skin_block(
     Returns:
         Vertices (V, 3, B) and joints (B, 55, 3), rest pelvis in its place [m].
     """
-    frames = len(local)
     turned, placed = forward_kinematics(local, rest)
-    feature = np.concatenate([expression, (local[:, 1:] - np.eye(3)).reshape(frames, -1)], axis=1)
-    feature = np.ascontiguousarray(feature.T, dtype=np.float32)
-    moves = np.concatenate([turned, (placed - _apply(turned, rest))[..., None]], axis=-1, dtype=np.float32)
-    columns = np.ascontiguousarray(moves.reshape(frames, NUM_JOINTS, 12).transpose(1, 2, 0))
-    columns = columns.reshape(NUM_JOINTS, -1)
-    vertices = np.empty((skin.num_vertices, 3, frames), dtype=np.float32)
+    feature = np.concatenate([expression, (local[:, 1:] - np.eye(3)).reshape(len(local), -1)], axis=1)
+    moves = np.concatenate([turned, (placed - _apply(turned, rest))[..., None]], axis=-1)
+    return deform(skin, shaped, feature, moves), placed
+
+
+def deform(skin: Skin, shaped: Float32Array, feature: FloatArray, moves: FloatArray) -> Float32Array:
+    """Vertices (V, 3, B) [m] of one block of B frames.
+
+    Args:
+        skin: the model's products.
+        shaped: (3V, 1 or B) rest vertices for the shape [m].
+        feature: (B, C) factors of the correctives.
+        moves: (B, J, 3, 4) what takes a point at rest along with each joint.
+    """
+    frames, joints = moves.shape[:2]
+    factors = np.ascontiguousarray(feature.T, dtype=np.float32)
+    columns = np.ascontiguousarray(moves.reshape(frames, joints, 12).transpose(1, 2, 0), dtype=np.float32)
+    columns = columns.reshape(joints, -1)
+    vertices = np.empty((len(shaped) // 3, 3, frames), dtype=np.float32)
     start = 0
     for tile in skin.tiles:
         out = vertices[start : start + tile.weights.shape[0]]
-        bare = tile.correctives @ feature
+        bare = tile.correctives @ factors
         bare += shaped[3 * start : 3 * start + len(bare)]
         blend = (tile.weights @ columns).reshape(-1, 3, 4, frames)
         blend[:, :, :3] *= bare.reshape(-1, 1, 3, frames)
@@ -139,4 +156,4 @@ def skin_block(
         out += blend[:, :, 2]
         out += blend[:, :, 3]
         start += len(out)
-    return vertices, placed
+    return vertices

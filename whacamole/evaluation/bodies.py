@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from whacamole.body import JOINT_INDEX, NUM_BETAS, NUM_EXPRESSION, BodyModel, BodyParams
+from whacamole.body.skinning import Skin, rotations, skin_block
 from whacamole.evaluation.core.alignment import FloatArray
 from whacamole.evaluation.records import BodyKind, IntArray
 from whacamole.evaluation.smpl import SmplModel
@@ -17,6 +18,9 @@ Float32Array = npt.NDArray[np.float32]
 _PUBLISHED_FEET = {("smpl", 6890): (3216, 3387, 6617, 6787), ("smplh", 6890): (3216, 3387, 6617, 6787),
                    ("smplx", 10475): (8549, 8702, 8915, 6855)}  # fmt: skip
 """Foot vertices of WHAM's and GVHMR's evaluators (SMPL) and of BEDLAM2's (SMPL-X)."""
+
+DENSE = 0.2
+"""Share of pose correctives that are not zero from which on a dense product is the faster one."""
 
 _SOLE = 0.02
 """Vertices this near the lowest of their foot at rest [m] may be its heel or toe."""
@@ -32,19 +36,21 @@ class LocalPose:
     right_hand: FloatArray
     face: FloatArray
     expression: FloatArray
+    root: FloatArray | None = None
+    """(F, 3) turn about the pelvis, ``None`` for none."""
 
-    def part(self, rows: IntArray) -> "LocalPose":
-        """Some of the frames."""
+    def part(self, rows: IntArray, root: FloatArray | None = None) -> "LocalPose":
+        """Some of the frames, with a turn of the root."""
         betas = self.betas[rows] if self.betas.ndim == 2 else self.betas
         rest = {
             name: getattr(self, name)[rows]
             for name in ("body_pose", "left_hand", "right_hand", "face", "expression")
         }
-        return LocalPose(betas, **rest)
+        return LocalPose(betas, **rest, root=root)
 
 
 class Body(Protocol):
-    """A body model as the scores need it. Local means: pelvis joint at the origin, root not turned."""
+    """A body model as the scores need it. Local means: pelvis joint at the origin, the world left out."""
 
     kind: BodyKind
     extras: Mapping[str, Any]
@@ -68,7 +74,7 @@ class Body(Protocol):
         """(F, J, 3) [m]."""
 
     def local_vertices(self, pose: LocalPose) -> Float32Array:
-        """(F, V, 3) [m]."""
+        """(V, 3, F) [m], frames last: the layout of :mod:`whacamole.evaluation.core.surface`."""
 
 
 class SmplxBody:
@@ -89,6 +95,10 @@ class SmplxBody:
             model = _restricted(model, kept)
             self.scored, self.feet = np.searchsorted(kept, even), np.searchsorted(kept, feet)
         self.model = model
+        full = model.arrays
+        dense = full.posedirs.nnz > DENSE * np.prod(full.posedirs.shape)
+        self._skin = Skin.build(full.expression_dirs, full.posedirs, full.weights, dense=bool(dense))
+        self._shape_dirs = full.shapedirs.reshape(-1, NUM_BETAS)
 
     @property
     def weights(self) -> FloatArray:
@@ -106,14 +116,21 @@ class SmplxBody:
 
     def local_vertices(self, pose: LocalPose) -> Float32Array:
         """See :class:`Body`."""
-        posed = self.model.pose(self._params(pose))
-        return posed.vertices - posed.joints[:, :1].astype(np.float32)
+        params = self._params(pose)
+        full = params.full_pose()
+        rest = np.broadcast_to(self.model.rest_joints(params.betas, params.expression), full.shape)
+        shaped = self._shape_dirs @ np.atleast_2d(params.betas).T.astype(np.float32)
+        shaped += self.model.v_template.reshape(-1, 1)
+        vertices, joints = skin_block(self._skin, shaped, params.expression, rotations(full), rest)
+        vertices -= joints[:, 0].T.astype(np.float32)
+        return vertices
 
     def _params(self, pose: LocalPose) -> BodyParams:
         still = np.zeros((len(pose.body_pose), 3))
+        root = still if pose.root is None else pose.root
         jaw, leye, reye = np.moveaxis(pose.face, 1, 0)
         return BodyParams(
-            betas=_wide(pose.betas), expression=pose.expression, global_orient=still, transl=still,
+            betas=_wide(pose.betas), expression=pose.expression, global_orient=root, transl=still,
             body_pose=pose.body_pose[:, :21], left_hand_pose=pose.left_hand, right_hand_pose=pose.right_hand,
             jaw_pose=jaw, leye_pose=leye, reye_pose=reye,
         )  # fmt: skip
@@ -140,18 +157,20 @@ class SmplBody:
 
     def local_joints(self, pose: LocalPose) -> FloatArray:
         """See :class:`Body`."""
-        return self._pose(pose)[0]
+        joints = self.model.pose_joints(self._full(pose), pose.betas)
+        return joints - joints[:, :1]
 
     def local_vertices(self, pose: LocalPose) -> Float32Array:
         """See :class:`Body`."""
-        return self._pose(pose)[1].astype(np.float32)
+        joints, vertices = self.model.pose(self._full(pose), pose.betas)
+        vertices -= joints[:, 0].T.astype(np.float32)
+        return vertices
 
-    def _pose(self, pose: LocalPose) -> tuple[FloatArray, FloatArray]:
-        root = np.zeros((len(pose.body_pose), 1, 3))
+    def _full(self, pose: LocalPose) -> FloatArray:
+        root = np.zeros((len(pose.body_pose), 1, 3)) if pose.root is None else pose.root[:, None]
         rest = (pose.left_hand, pose.right_hand) if self.kind == "smplh" else ()
         body = pose.body_pose[:, :21] if self.kind == "smplh" else _with_hands(pose.body_pose)
-        joints, vertices = self.model.pose(np.concatenate([root, body, *rest], axis=1), pose.betas)
-        return joints - joints[:, :1], vertices - joints[:, :1]
+        return np.concatenate([root, body, *rest], axis=1)
 
 
 def _with_hands(body_pose: FloatArray) -> FloatArray:

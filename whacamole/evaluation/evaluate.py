@@ -1,9 +1,14 @@
 """``evaluate``: ground truth and predictions in, a result out, one sequence in memory at a time."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from concurrent.futures import ThreadPoolExecutor
+import sys
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import Future, ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
-from itertools import islice
+from functools import partial
+from itertools import chain, islice
+from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
@@ -23,6 +28,9 @@ from whacamole.evaluation.scores import SequenceScore
 from whacamole.evaluation.truth.source import TruthSource, open_truth
 
 Progress = Callable[[str, str, SequenceScore | str], None]
+Outcomes = list[tuple[str, SequenceScore | str, str]]
+"""Of each method its name, the scores or why there are none, and the truths it was given."""
+Work = Callable[[str], Outcomes]
 
 
 @dataclass(frozen=True)
@@ -99,7 +107,7 @@ def evaluate(
         truth: which benchmark ``data`` is, "auto" to tell by what it holds.
         format: of the predictions, "auto" to tell for each sequence.
         bodies: body model files and vertex options.
-        jobs: sequences scored at the same time, in threads; the result is the same.
+        jobs: sequences scored at the same time, each in a process of its own; the result is the same.
         limit: score only the first so many sequences.
         progress: called after each sequence with method, sequence id, and its scores or why there are none.
 
@@ -115,9 +123,7 @@ def evaluate(
     scorer = Scorer(chosen, given.library(), given.options())
     methods = {name: MethodResult(name) for name in readers}
 
-    def work(sequence_id: str) -> list[tuple[str, SequenceScore | str, str]]:
-        return list(_score(sequence_id, source, readers, scorer))
-
+    work = partial(_score, source=source, readers=readers, scorer=scorer)
     for sequence_id, outcomes in _in_order(work, ids, jobs):
         for name, outcome, used in outcomes:
             _record(methods[name], sequence_id, outcome, used)
@@ -150,35 +156,51 @@ def score_recording(
 
 def _score(
     sequence_id: str, source: TruthSource, readers: Mapping[str, PredictionFolder], scorer: Scorer
-) -> Iterator[tuple[str, SequenceScore | str, str]]:
-    """For each method its name, the scores or why there are none, and the truths it was given."""
+) -> Outcomes:
     try:
         truth = source.read(sequence_id)
     except EvaluationError as error:
-        yield from ((name, f"ground truth: {error}", "") for name in readers)
-        return
+        return [(name, f"ground truth: {error}", "") for name in readers]
+    outcomes: Outcomes = []
     for name, reader in readers.items():
         try:
             prediction = reader.read(sequence_id, truth.fps)
-            yield name, scorer.score(truth, prediction), prediction.ground_truth_used
+            outcomes.append((name, scorer.score(truth, prediction), prediction.ground_truth_used))
         except EvaluationError as error:
-            yield name, str(error), ""
+            outcomes.append((name, str(error), ""))
+    return outcomes
 
 
-def _in_order(
-    work: Callable[[str], list[tuple[str, SequenceScore | str, str]]], ids: Iterable[str], jobs: int
-) -> Iterator[tuple[str, list[tuple[str, SequenceScore | str, str]]]]:
+def _in_order(work: Work, ids: Sequence[str], jobs: int) -> Iterator[tuple[str, Outcomes]]:
     """Work on ``jobs`` sequences at a time, hand back in order, hold no more than twice as many."""
-    if jobs <= 1:
-        yield from ((name, work(name)) for name in ids)
-        return
-    names = iter(ids)
-    with ThreadPoolExecutor(jobs) as pool:
-        pending = [(name, pool.submit(work, name)) for name in islice(names, 2 * jobs)]
-        while pending:
-            name, future = pending.pop(0)
-            yield name, future.result()
-            pending += [(name, pool.submit(work, name)) for name in islice(names, 1)]
+    names, pending = iter(ids), deque[tuple[str, Future[Outcomes]]]()
+    if jobs > 1 and len(ids) > 1:
+        method = "fork" if sys.platform == "linux" else "spawn"
+        with ProcessPoolExecutor(
+            min(jobs, len(ids)), get_context(method), initializer=_adopt, initargs=(work,)
+        ) as pool:
+            try:
+                pending.extend((name, pool.submit(_perform, name)) for name in islice(names, 2 * jobs))
+                while pending:
+                    yield pending[0][0], pending[0][1].result()
+                    pending.popleft()
+                    pending.extend((name, pool.submit(_perform, name)) for name in islice(names, 1))
+            except BrokenProcessPool:  # somebody ended a worker: what it had not finished is done here
+                names = chain([name for name, _ in pending], names)
+    for name in names:
+        yield name, work(name)
+
+
+_adopted: list[Work] = []
+
+
+def _adopt(work: Work) -> None:
+    """Keep the work in a process of the pool."""
+    _adopted[:] = [work]
+
+
+def _perform(name: str) -> Outcomes:
+    return _adopted[0](name)
 
 
 def _named(predictions: Path | str | Mapping[str, Path | str]) -> Mapping[str, Path | str]:

@@ -103,9 +103,10 @@ class Figure:
                 return (joints - joints[:, :1]) @ root[0]
         return self._body.local_joints(self.pose)
 
-    def local_vertices(self, at: IntArray) -> Float32Array:
-        """(len(at), V, 3) [m] of some of the rows, pelvis at the origin, root not turned."""
-        return self._body.local_vertices(self.pose.part(at))
+    def local_vertices(self, at: IntArray, turn: FloatArray | None = None) -> Float32Array:
+        """(V, 3, len(at)) [m] of some of the rows, pelvis at the origin, root turned by (len(at), 3, 3)."""
+        root = None if turn is None else Rotation.from_matrix(turn).as_rotvec()
+        return self._body.local_vertices(self.pose.part(at, root))
 
     def root(self, space: Space) -> tuple[FloatArray, FloatArray] | None:
         """Orientation (F, 3, 3) and pelvis (F, 3) [m] in a space, ``None`` where nothing tells."""

@@ -8,14 +8,14 @@ from whacamole.body import JOINT_INDEX
 from whacamole.errors import EvaluationError
 from whacamole.evaluation.bodies import Body, Float32Array
 from whacamole.evaluation.core.alignment import FloatArray, umeyama
-from whacamole.evaluation.core.pose import point_error, procrustes_error
+from whacamole.evaluation.core.surface import Region, aligned_error, region_errors, surface_similarity
 from whacamole.evaluation.joints import H36M14, joint_rows, root_of
 from whacamole.evaluation.pairing import Pair
 from whacamole.evaluation.protocol import Protocol
 from whacamole.evaluation.records import IntArray
 
-BLOCK = 450_000
-"""Vertices of a body held at once (frames × V): bounds the memory, and stays near the processor's caches."""
+BLOCK = 1_400_000
+"""Vertices of a body held at once (frames × V): bounds the memory."""
 
 _PART_WEIGHT = 0.5
 
@@ -53,7 +53,7 @@ def score_vertices(pair: Pair, protocol: Protocol, options: VertexOptions) -> Ve
     """Pose both bodies, a block of frames at a time, and compare their surfaces.
 
     All happens in the true body's own frame, pelvis at the origin and root not turned: distances do not
-    change, and the true vertices need no transform.
+    change, and neither side needs a transform after it is posed.
 
     Raises:
         EvaluationError: the meshes differ and no mapping fits, or a joint regressor is wanted and not given.
@@ -82,42 +82,49 @@ class _Surfaces:
     def compare(self, at: IntArray) -> dict[str, FloatArray]:
         """Errors at some rows, with "feet", "feet_truth" and, if wanted, "regressed", "regressed_truth"."""
         pair, bodies = self.pair, self.bodies
-        raw = pair.prediction.local_vertices(pair.at_prediction[at])
+        turn, shift = (None, None) if self._moves is None else (self._moves[0][at], self._moves[1][at])
+        raw = pair.prediction.local_vertices(pair.at_prediction[at], turn)
         ours = pair.truth.local_vertices(pair.at_truth[at])
         theirs = _mapped(raw, bodies, self.options)
-        found: dict[str, FloatArray] = {"feet": raw[:, bodies[0].feet], "feet_truth": ours[:, bodies[1].feet]}
+        back = np.eye(3) if turn is None else turn  # a row times R is its column times Rᵀ
+        found: dict[str, FloatArray] = {
+            "feet": _points(raw, bodies[0].feet) @ back,
+            "feet_truth": _points(ours, bodies[1].feet),
+        }
         joints = [both[at] for both in pair.local_joints]
+        if turn is not None:
+            joints[0] = _turned(joints[0], turn)
         sets = _sets(pair, joints)
         if self.protocol.joints == "h36m14":
             sets = _regress(theirs, self.options), _regress(ours, self.options)
-            found |= {"regressed": sets[0], "regressed_truth": sets[1]}
+            found |= {"regressed": sets[0] @ back, "regressed_truth": sets[1]}
         scored = bodies[1].scored
-        found["pa_pve"] = _procrustes(theirs[:, scored], ours[:, scored], sets, self.protocol)
-        if self._moves is not None:
-            found |= self._placed(theirs, ours, joints, sets, (self._moves[0][at], self._moves[1][at]))
-        return found
+        both = theirs[scored], ours[scored]
+        if shift is not None:
+            found |= self._placed(both, joints, sets, shift)
+        by_joints = self.protocol.pa_vertices == "joints"
+        similarity = umeyama(*sets) if by_joints else surface_similarity(*both)
+        return found | {"pa_pve": aligned_error(*both, similarity)}
 
     def _placed(
         self,
-        theirs: Float32Array,
-        ours: Float32Array,
+        surfaces: tuple[Float32Array, Float32Array],
         joints: list[FloatArray],
         sets: tuple[FloatArray, FloatArray],
-        moves: tuple[FloatArray, FloatArray],
+        shift: FloatArray,
     ) -> dict[str, FloatArray]:
         """Errors that need both bodies in the camera's frame."""
-        turn, shift = moves
-        moved, scored = _turned(theirs, turn), self.bodies[1].scored
-        root = root_of(_turned(sets[0], turn), self.pair.joint_set, self.protocol.root)
-        gap = root - root_of(sets[1], self.pair.joint_set, self.protocol.root)
-        found = {
-            key: point_error(moved[:, scored] + by[:, None].astype(np.float32), ours[:, scored])
-            for key, by in (("t_pve", shift), ("pve", -gap))
-        }
-        placed = _turned(joints[0], turn)
-        for key, regions in self._parts.items():
-            found[key] = _part_error(moved, ours, placed, joints[1], regions)
-        return found
+        roots = [root_of(side, self.pair.joint_set, self.protocol.root) for side in sets]
+        regions = {"t_pve": [Region(None, shift.T)], "pve": [Region(None, (roots[1] - roots[0]).T)]}
+        for key, parts in self._parts.items():
+            regions[key] = [Region(rows, (joints[1] - joints[0])[:, anchor].T) for rows, anchor in parts]
+        errors = region_errors(*surfaces, [region for each in regions.values() for region in each])
+        return {key: np.mean([errors.pop(0) for _ in each], axis=0) for key, each in regions.items()}
+
+
+def _points(surface: Float32Array, rows: IntArray) -> FloatArray:
+    """A few vertices (F, n, 3) of a surface (V, 3, F)."""
+    return surface[rows].transpose(2, 0, 1).astype(np.float64)
 
 
 def _bodies(pair: Pair) -> tuple[Body, Body]:
@@ -140,7 +147,7 @@ def _moves(pair: Pair) -> tuple[FloatArray, FloatArray] | None:
 
 
 def _turned(points: FloatArray, turn: FloatArray) -> FloatArray:
-    return points @ np.swapaxes(turn, -1, -2).astype(points.dtype)
+    return points @ np.swapaxes(turn, -1, -2)
 
 
 def _mapped(vertices: Float32Array, bodies: tuple[Body, Body], options: VertexOptions) -> Float32Array:
@@ -149,19 +156,20 @@ def _mapped(vertices: Float32Array, bodies: tuple[Body, Body], options: VertexOp
         return vertices
     matrix = options.mapping
     shape = getattr(matrix, "shape", (0, 0))
-    if len(shape) != 2 or shape[1] != vertices.shape[1] or shape[0] != len(bodies[1].weights):
+    if len(shape) != 2 or shape[1] != len(vertices) or shape[0] != len(bodies[1].weights):
         raise EvaluationError(
             f"meshes {bodies[0].topology} and {bodies[1].topology} have no common vertices; add --vertex-map"
         )
-    flat = vertices.transpose(1, 0, 2).reshape(vertices.shape[1], -1)
-    mapped = np.asarray(matrix @ flat, dtype=np.float32)  # type: ignore[operator]
-    return mapped.reshape(shape[0], len(vertices), 3).transpose(1, 0, 2)
+    mapped: Float32Array = matrix @ vertices.reshape(len(vertices), -1)  # type: ignore[operator]
+    return mapped.reshape(shape[0], *vertices.shape[1:])
 
 
 def _regress(vertices: Float32Array, options: VertexOptions) -> FloatArray:
-    if options.regressor is None or options.regressor.shape[1] != vertices.shape[1]:
+    """The 14 joints (F, 14, 3) [m] of vertices (V, 3, F)."""
+    if options.regressor is None or options.regressor.shape[1] != len(vertices):
         raise EvaluationError("joints=h36m14 are regressed from SMPL vertices; add --joint-regressor")
-    return np.asarray(options.regressor[list(H36M14)] @ vertices)
+    flat = options.regressor[list(H36M14)] @ vertices.reshape(len(vertices), -1)
+    return flat.reshape(len(H36M14), *vertices.shape[1:]).transpose(2, 0, 1)
 
 
 def _sets(pair: Pair, joints: list[FloatArray]) -> tuple[FloatArray, FloatArray]:
@@ -170,24 +178,11 @@ def _sets(pair: Pair, joints: list[FloatArray]) -> tuple[FloatArray, FloatArray]
     return both[0], both[1]
 
 
-def _procrustes(
-    prediction: FloatArray,
-    truth: FloatArray,
-    joints: tuple[FloatArray, FloatArray],
-    protocol: Protocol,
-) -> FloatArray:
-    if protocol.pa_vertices == "vertices":
-        return procrustes_error(prediction, truth)
-    return point_error(umeyama(joints[0], joints[1]).apply(prediction), truth)
-
-
 def _parts(body: Body) -> dict[str, list[tuple[IntArray, int]]]:
-    """By metric: vertices that a part moves by more than half, and the joint they are aligned at."""
+    """By metric: scored vertices that a part moves by more than half, and the joint they are aligned at."""
     if body.kind != "smplx":
         return {}
-    weights = body.weights
-    scored = np.zeros(len(weights), dtype=bool)
-    scored[body.scored] = True
+    weights = body.weights[body.scored]
     regions = {
         "left": ([JOINT_INDEX["left_wrist"], *range(25, 40)], JOINT_INDEX["left_wrist"]),
         "right": ([JOINT_INDEX["right_wrist"], *range(40, 55)], JOINT_INDEX["right_wrist"]),
@@ -197,22 +192,7 @@ def _parts(body: Body) -> dict[str, list[tuple[IntArray, int]]]:
         ),
     }
     found = {
-        name: (np.flatnonzero(scored & (weights[:, joints].sum(axis=1) > _PART_WEIGHT)), anchor)
+        name: (np.flatnonzero(weights[:, joints].sum(axis=1) > _PART_WEIGHT), anchor)
         for name, (joints, anchor) in regions.items()
     }
     return {"pve_hands": [found["left"], found["right"]], "pve_face": [found["face"]]}
-
-
-def _part_error(
-    prediction: FloatArray,
-    truth: FloatArray,
-    joints_prediction: FloatArray,
-    joints_truth: FloatArray,
-    regions: list[tuple[IntArray, int]],
-) -> FloatArray:
-    """Mean error of regions, each aligned at its joint."""
-    errors = []
-    for vertices, anchor in regions:
-        gap = (joints_prediction[:, anchor] - joints_truth[:, anchor])[:, None].astype(np.float32)
-        errors.append(point_error(prediction[:, vertices] - gap, truth[:, vertices]))
-    return np.asarray(np.mean(errors, axis=0))

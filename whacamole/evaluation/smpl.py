@@ -7,16 +7,20 @@ SMPL-H (52) need their own model files: ``.npz``, or the published ``.pkl``, rea
 import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any, Self
 
 import numpy as np
 import numpy.typing as npt
-from scipy.spatial.transform import Rotation
+import scipy.sparse
 
+from whacamole.body.skinning import Skin, deform, rotations
 from whacamole.errors import EvaluationError
 from whacamole.evaluation.core.alignment import FloatArray
 from whacamole.evaluation.io import inert
+
+Float32Array = npt.NDArray[np.float32]
 
 NUM_JOINTS = {24: "smpl", 52: "smplh"}
 _NEEDED = ("v_template", "shapedirs", "posedirs", "J_regressor", "weights", "kintree_table")
@@ -41,7 +45,7 @@ class SmplModel:
     sha256: str
     v_template: FloatArray
     shapedirs: FloatArray
-    posedirs: npt.NDArray[np.float32]
+    posedirs: Float32Array
     joint_regressor: FloatArray
     weights: FloatArray
     parents: tuple[int, ...]
@@ -77,40 +81,59 @@ class SmplModel:
             extras={key: value for key, value in arrays.items() if key not in _NEEDED},
         )
 
-    def rest_vertices(self, betas: FloatArray) -> FloatArray:
-        """Vertices (…, V, 3) [m] of shapes (…, B); missing coefficients are 0, surplus ones are left out."""
-        count = min(betas.shape[-1], self.shapedirs.shape[2])
-        shaped: FloatArray = np.einsum("vik,...k->...vi", self.shapedirs[:, :, :count], betas[..., :count])
-        return self.v_template + shaped
-
     def rest_joints(self, betas: FloatArray) -> FloatArray:
-        """Joints (…, J, 3) [m] of shapes (…, B)."""
-        count = min(betas.shape[-1], self.shapedirs.shape[2])
-        basis = np.einsum("jv,vik->jik", self.joint_regressor, self.shapedirs[:, :, :count])
-        joints: FloatArray = self.joint_regressor @ self.v_template + np.einsum(
-            "jik,...k->...ji", basis, betas[..., :count]
+        """Joints (…, J, 3) [m] of shapes (…, B); missing coefficients are 0, surplus ones are left out."""
+        template, directions = self._joint_shapes
+        count = min(betas.shape[-1], directions.shape[2])
+        joints: FloatArray = template + np.einsum(
+            "jik,...k->...ji", directions[:, :, :count], betas[..., :count]
         )
         return joints
 
-    def pose(self, pose: FloatArray, betas: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Joints (T, J, 3) and vertices (T, V, 3) [m], the rest pelvis in its place, no translation.
+    @cached_property
+    def _joint_shapes(self) -> tuple[FloatArray, FloatArray]:
+        """Joints of the mean shape (J, 3) and their directions (J, 3, B): the vertices' ones, regressed."""
+        directions = self.joint_regressor @ self.shapedirs.reshape(len(self.v_template), -1)
+        return self.joint_regressor @ self.v_template, directions.reshape(-1, *self.shapedirs.shape[1:])
+
+    def pose_joints(self, pose: FloatArray, betas: FloatArray) -> FloatArray:
+        """Joints (T, J, 3) [m] of :meth:`pose` alone."""
+        return self._posed(pose, betas)[2]
+
+    def pose(self, pose: FloatArray, betas: FloatArray) -> tuple[FloatArray, Float32Array]:
+        """Joints (T, J, 3) and vertices (V, 3, T) float32 [m], the rest pelvis in its place, no translation.
 
         Args:
             pose: axis-angle (T, J, 3).
             betas: (B,) or (T, B).
         """
-        T, J = pose.shape[:2]
-        local = Rotation.from_rotvec(pose.reshape(-1, 3)).as_matrix().reshape(T, J, 3, 3)
-        rest = np.broadcast_to(self.rest_joints(betas), (T, J, 3))
-        turned, placed = chain(local, rest, self.parents)
-        feature = (local[:, 1:] - np.eye(3)).reshape(T, -1).astype(np.float32)
-        bare = self.rest_vertices(betas) + (feature @ self.posedirs.T).reshape(T, -1, 3)
+        local, turned, placed, rest = self._posed(pose, betas)
+        feature = (local[:, 1:] - np.eye(3)).reshape(len(pose), -1)
         moves = np.concatenate(
             [turned, (placed - np.einsum("tjab,tjb->tja", turned, rest))[..., None]], axis=-1
         )
-        blend = (self.weights @ moves.reshape(T, J, 12)).reshape(T, -1, 3, 4)
-        vertices = np.einsum("tvab,tvb->tva", blend[..., :3], bare) + blend[..., 3]
-        return placed, vertices
+        return placed, deform(self._skin, self._shaped(np.atleast_2d(betas)), feature, moves)
+
+    def _shaped(self, betas: FloatArray) -> Float32Array:
+        """Rest vertices (3V, n) of shapes (n, B)."""
+        directions = self.shapedirs.reshape(3 * len(self.v_template), -1)
+        count = min(betas.shape[1], directions.shape[1])
+        shaped = self.v_template.reshape(-1, 1) + directions[:, :count] @ betas[:, :count].T
+        return shaped.astype(np.float32)
+
+    @cached_property
+    def _skin(self) -> Skin:
+        still = np.zeros((len(self.v_template), 3, 0), dtype=np.float32)
+        weights = self.weights.astype(np.float32)
+        return Skin.build(still, scipy.sparse.csr_array(self.posedirs), weights, dense=True)
+
+    def _posed(
+        self, pose: FloatArray, betas: FloatArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Local and global rotations (T, J, 3, 3), joints and joints at rest (T, J, 3)."""
+        local = rotations(pose)
+        rest = np.broadcast_to(self.rest_joints(betas), pose.shape)
+        return local, *chain(local, rest, self.parents), rest
 
 
 def chain(local: FloatArray, rest: FloatArray, parents: tuple[int, ...]) -> tuple[FloatArray, FloatArray]:

@@ -45,7 +45,7 @@ def test_smpl_is_posed_as_the_smplx_package_does(tmp_path, make, joints):
     np.testing.assert_allclose(
         ours_joints, placed.numpy(), atol=1e-7
     )  # its axis-angle has an epsilon of 1e-8
-    np.testing.assert_allclose(ours_vertices, vertices.numpy(), atol=1e-6)  # pose directions are float32
+    np.testing.assert_allclose(ours_vertices.transpose(2, 0, 1), vertices.numpy(), atol=1e-6)  # float32
 
 
 def test_the_published_pkl_gives_the_same_model(tmp_path, make):
@@ -90,7 +90,8 @@ def test_local_bodies_are_those_of_the_model_without_the_root():
     )  # fmt: skip
     posed = BodyModel.embedded().pose(params)
     np.testing.assert_allclose(body.local_joints(pose), posed.joints - posed.joints[:, :1], atol=1e-12)
-    np.testing.assert_allclose(body.local_vertices(pose), posed.vertices - posed.joints[:, :1], atol=1e-5)
+    vertices = body.local_vertices(pose).transpose(2, 0, 1)
+    np.testing.assert_allclose(vertices, posed.vertices - posed.joints[:, :1], atol=1e-6)
 
 
 def test_a_sample_of_vertices_is_a_part_of_all_and_has_the_same_joints():
@@ -99,9 +100,9 @@ def test_a_sample_of_vertices_is_a_part_of_all_and_has_the_same_joints():
     np.testing.assert_allclose(figures[0].local_joints, figures[1].local_joints, atol=1e-6)
     at = np.arange(3)
     every, some = (figure.local_vertices(at) for figure in figures)
-    picked = np.linspace(0, every.shape[1] - 1, 500).round().astype(int)
-    np.testing.assert_allclose(some[:, sample.scored], every[:, picked], atol=1e-5)
-    np.testing.assert_allclose(some[:, sample.feet], every[:, whole.feet], atol=1e-5)
+    picked = np.linspace(0, len(every) - 1, 500).round().astype(int)
+    np.testing.assert_allclose(some[sample.scored], every[picked], atol=1e-5)
+    np.testing.assert_allclose(some[sample.feet], every[whole.feet], atol=1e-5)
     assert whole.topology != sample.topology
 
 

@@ -1,5 +1,7 @@
 """Results: pooling that is exact, intervals that cover, files that come back whole."""
 
+import os
+
 import numpy as np
 import pytest
 
@@ -18,6 +20,7 @@ from whacamole.evaluation import (
 )
 from whacamole.evaluation.pooling import moments
 from whacamole.evaluation.protocol import PROTOCOLS
+from whacamole.evaluation.truth.dataset import DatasetTruth
 
 
 @pytest.fixture(scope="module")
@@ -66,8 +69,25 @@ def test_saved_and_read_back_it_is_the_same(result, tmp_path):
     assert_same(result, Result.load(result.save(tmp_path / "new" / "result.npz")))
 
 
-def test_any_number_of_threads_gives_the_same(dataset, folders, result):
+def test_any_number_of_processes_gives_the_same(dataset, folders, result):
     assert_same(result, evaluate(dataset, folders, "whac", bodies=Bodies(vertices=200), jobs=3))
+
+
+class Deadly(DatasetTruth):
+    """Ends the process that reads it, unless it is the first one."""
+
+    def __init__(self, root):
+        super().__init__(root)
+        self._home = os.getpid()
+
+    def read(self, sequence_id):
+        if os.getpid() != self._home:
+            os._exit(1)
+        return super().read(sequence_id)
+
+
+def test_what_a_killed_process_had_not_finished_is_done_by_the_first(dataset, folders, result):
+    assert_same(result, evaluate(Deadly(dataset), folders, "whac", bodies=Bodies(vertices=200), jobs=2))
 
 
 def test_less_noise_is_better_in_everything_that_counts(result):

@@ -65,19 +65,33 @@ def umeyama(
     weighted = from_mean if weights is None else from_mean * np.swapaxes(share, -1, -2)
     each = 1.0 / source.shape[-2] if weights is None else 1.0
     covariance = each * (np.swapaxes(to_mean, -1, -2) @ weighted).astype(np.float64)
+    variance = None
+    if with_scale:
+        products = np.swapaxes(weighted, -1, -2) @ from_mean
+        variance = each * np.trace(products, axis1=-2, axis2=-1, dtype=np.float64)
+    return similarity_of_moments(mean_source[..., 0, :], mean_target[..., 0, :], covariance, variance)
+
+
+def similarity_of_moments(
+    mean_source: FloatArray, mean_target: FloatArray, covariance: FloatArray, variance: FloatArray | None
+) -> Similarity:
+    """:func:`umeyama` from what it needs of the points.
+
+    Args:
+        mean_source, mean_target: (…, 3) [m].
+        covariance: (…, 3, 3), mean of (target − mean)(source − mean)ᵀ [m²].
+        variance: (…), mean of ‖source − mean‖² [m²]; ``None`` for a rigid motion.
+    """
     U, D, Vt = np.linalg.svd(covariance)
     S = np.ones_like(D)
     S[..., 2] = np.where(np.linalg.det(U) * np.linalg.det(Vt) < 0.0, -1.0, 1.0)
     rotation = (U * S[..., None, :]) @ Vt
-    if with_scale:
-        products = np.swapaxes(weighted, -1, -2) @ from_mean
-        variance = each * np.trace(products, axis1=-2, axis2=-1, dtype=np.float64)
+    scale = np.ones(D.shape[:-1])
+    if variance is not None:
         with np.errstate(invalid="ignore", divide="ignore"):
             scale = np.where(variance > 0.0, (D * S).sum(axis=-1) / variance, np.nan)
-    else:
-        scale = np.ones(D.shape[:-1])
-    moved = scale[..., None] * (mean_source @ np.swapaxes(rotation, -1, -2))[..., 0, :]
-    return Similarity(scale, rotation, mean_target[..., 0, :] - moved)
+    turned = (rotation @ mean_source[..., None])[..., 0]
+    return Similarity(scale, rotation, mean_target - scale[..., None] * turned)
 
 
 def _shares(points: FloatArray, weights: FloatArray | None) -> FloatArray:
