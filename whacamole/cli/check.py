@@ -23,11 +23,15 @@ def check(
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print findings only.")] = False,
     json_output: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
 ) -> None:
-    """Derive the labels again from each other and hold them against the pixels; exit 1 on a finding."""
+    """Derive the labels again from each other and hold them against the pixels; exit 1 on a finding.
+
+    The outcome is stored in DATASET/check.json, which `page` shows; nothing else is written.
+    """
     from rich.console import Console
 
     from whacamole.body import BodyModel
     from whacamole.check import check_dataset
+    from whacamole.check.stored import store_findings
 
     model = None if body_model is None else BodyModel.load(body_model)
     with Console(stderr=True, quiet=quiet or json_output).status("auditing") as status:
@@ -37,6 +41,10 @@ def check(
             body_model=model,
             on_sequence=lambda sequence_id: status.update(f"auditing {sequence_id}"),
         )
+    try:
+        store_findings(dataset, found)  # for the page and for whoever looks later
+    except OSError as error:
+        typer.echo(f"{dataset}: the outcome was not stored ({error.strerror or error})", err=True)
     if json_output:
         typer.echo(json.dumps(found.to_json(), indent=1))
     else:

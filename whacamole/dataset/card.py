@@ -23,14 +23,19 @@ TITLES = {
 }
 
 
-def write_card(layout: DatasetLayout) -> None:
+def write_card(layout: DatasetLayout, numbers: Statistics | None = None) -> None:
     """Write ``README.md`` of a dataset from its labels; the same dataset gives the same text.
+
+    Args:
+        numbers: what the dataset holds; counted anew where they are not given.
 
     Raises:
         DatasetError: a file of the dataset is missing or broken.
     """
     dataset = open_dataset(layout.root)
-    write_text(layout.root / "README.md", card_text(collect(dataset), dataset.index))
+    write_text(
+        layout.root / "README.md", card_text(collect(dataset) if numbers is None else numbers, dataset.index)
+    )
 
 
 def statistics_text(numbers: Statistics) -> str:

@@ -12,6 +12,7 @@ from whacamole.dataset import DatasetLayout, read_summary
 from whacamole.motion import FPS
 from whacamole.production.profiling import profile_as_dict, profile_table, read_profiles
 from whacamole.production.worklist import Worklist
+from whacamole.viewing.places import Places
 
 __all__ = ["Production"]
 
@@ -98,8 +99,7 @@ class Production:
             soft_wrap=True,
         )
         if finished:
-            preview = DatasetLayout(self.root).sequence(finished[0].sequence_id).preview
-            console.print(f"Look at {preview}", soft_wrap=True)
+            console.print(f"Open {Places(self.root).page} in a browser", soft_wrap=True)
 
     def _plan_table(self) -> Table:
         table = Table("sequence", "motion", "format", "people", "frames")

@@ -15,16 +15,18 @@ from rich.console import Console
 from render_jobs.farm import run_farm
 from render_jobs.probe import choose_engine
 from whacamole import __version__
-from whacamole.dataset import DatasetLayout, read_json, write_index
+from whacamole.dataset import DatasetLayout, open_dataset, read_json, write_index
 from whacamole.dataset.card import write_card
 from whacamole.dataset.files import write_json
 from whacamole.dataset.splitting import refresh_splits
+from whacamole.dataset.statistics import collect
 from whacamole.errors import DatasetError
 from whacamole.production.attempt import AttemptError, attempt
 from whacamole.production.progress import ProgressDisplay
 from whacamole.production.report import Production
 from whacamole.production.worklist import SequenceOrder, Worklist, failure_note, work_of
 from whacamole.recipe import Recipe
+from whacamole.viewing.page import write_page
 
 __all__ = ["Production", "produce"]
 
@@ -68,7 +70,9 @@ def produce(
     write_index(layout, facts, recipe.test_fraction)
     sides = refresh_splits(layout, recipe.test_fraction)  # by the rule of `split`, companions counted
     if layout.finished():
-        write_card(layout)
+        numbers = collect(open_dataset(layout.root))
+        write_card(layout, numbers)
+        write_page(layout, numbers)
     finished = work_of(recipe, layout.root)
     seconds = time.monotonic() - started
     kept = len(worklist.orders) - len(worklist.open)

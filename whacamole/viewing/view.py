@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from rich.console import Console
 from rich.progress import Progress
 
 from whacamole.dataset import Dataset, Sequence, open_dataset
@@ -58,6 +59,10 @@ def _scene(request: Request, server: Any, sequence: Sequence, look: Look, *, who
     return Scene3D(server, sequence, actors_of(sequence, model), surface, prediction, look)
 
 
+def _progress(quiet: bool) -> Progress:
+    return Progress(console=Console(stderr=True), transient=True, disable=quiet)
+
+
 def save_view(request: Request, path: Path, *, full: bool = False, quiet: bool = False) -> int:
     """Write the sequence as one HTML file; return its size in bytes.
 
@@ -71,7 +76,7 @@ def save_view(request: Request, path: Path, *, full: bool = False, quiet: bool =
         BodyModelError: the body model cannot be used.
     """
     sequence = request.opened()[1]
-    with serving("127.0.0.1", 0) as server, Progress(transient=True, disable=quiet) as progress:
+    with serving("127.0.0.1", 0) as server, _progress(quiet) as progress:
         look = Look(image_width=320, rounded=True)
         scene = _scene(request, server, sequence, look, whole=full)
         task = progress.add_task(f"saving {sequence.id}", total=len(sequence))
