@@ -230,7 +230,7 @@ def test_the_documentation_types_commands_that_exist() -> None:
         words = line.split()
         name = max((n for n in commands if words[: n.count(" ") + 1] == n.split()), key=len)
         assert name != "whacamole", f"{file}: {line}: no such command"
-        options = {option for parameter in commands[name].params for option in parameter.opts}
+        options = {o for p in commands[name].params for o in (*p.opts, *p.secondary_opts)}
         used = {word.split("=")[0] for word in words if word.startswith("--")} - {"--help"}
         assert used <= options, f"{file}: {line}: no option {', '.join(sorted(used - options))}"
 

@@ -14,6 +14,7 @@ from whacamole.cli.evaluate import evaluate
 from whacamole.cli.export import export
 from whacamole.cli.page import page
 from whacamole.cli.plan import plan
+from whacamole.cli.preview import preview
 from whacamole.cli.recipe import recipe
 from whacamole.cli.render import render
 from whacamole.cli.split import split
@@ -24,7 +25,7 @@ from whacamole.cli.view import view
 __all__ = ["app", "main"]
 
 COMMANDS: tuple[Callable[..., Any], ...] = (
-    render, plan, check, status, stats, view, page, split, export, evaluate, body, recipe, doctor,
+    render, plan, check, status, stats, view, preview, page, split, export, evaluate, body, recipe, doctor,
 )  # fmt: skip
 
 app = typer.Typer(

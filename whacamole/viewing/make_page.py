@@ -3,8 +3,10 @@
 from pathlib import Path
 
 from whacamole.dataset import open_dataset
+from whacamole.errors import DatasetError
 from whacamole.viewing.page import write_page
 from whacamole.viewing.places import Places
+from whacamole.viewing.preview import Wanted, make_previews
 from whacamole.viewing.view import Request, save_view
 
 __all__ = ["make_page"]
@@ -30,5 +32,10 @@ def make_page(
     for sequence_id in [name for name in data.ids if not places.scene(name).exists()][:scenes]:
         request = Request(dataset, sequence_id, body_model=body_model)
         save_view(request, places.scene(sequence_id), quiet=quiet)
+    missing = [name for name in data.ids if not places.video(name).exists()][:videos]
+    if missing:
+        made = make_previews(dataset, missing, Wanted(sheet=False, body_model=body_model), quiet=quiet)
+        for name, error in made.failed.items():
+            raise DatasetError(f"{name}: {error}")
     write_page(data.layout)
     return places.page
