@@ -5,6 +5,8 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import numpy as np
+
 from whacamole.baseline.estimators import EstimatorSource
 from whacamole.baseline.footage import Footage, sequence_footage, video_footage
 from whacamole.baseline.intrinsics import intrinsics
@@ -18,7 +20,7 @@ from whacamole.baseline.rigid import FloatArray
 from whacamole.baseline.velocimeter import MotionVelocimeter
 from whacamole.baseline.weights import bundled_weights, trained_on
 from whacamole.body import BodyModel
-from whacamole.errors import BaselineError
+from whacamole.errors import BaselineError, WhacamoleError
 
 
 @dataclass(frozen=True)
@@ -101,7 +103,7 @@ def run_all(
     for one in footage:
         try:
             yield run_one(one, setup, out / f"{one.id}.npz", watch)
-        except BaselineError as error:
+        except WhacamoleError as error:
             yield Outcome(one.id, frames=one.num_frames, problem=str(error))
 
 
@@ -131,6 +133,7 @@ def run_one(footage: Footage, setup: Setup, path: Path, watch: Watch = _nobody_w
         "notes": json.dumps(notes),
     }
     arrays = prediction_arrays(people, recovery, footage.frame_index, footage.fps, K, setup.body, about)
+    arrays["T_vo"] = np.where(odometry.valid[:, None, None], odometry.T_vo, np.nan)
     write_prediction(path, arrays)
     return Outcome(
         id=footage.id,

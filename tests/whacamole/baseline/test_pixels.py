@@ -51,12 +51,33 @@ def test_everybody_gets_a_track() -> None:
 
 
 def test_who_comes_later_is_found_at_the_next_look() -> None:
-    assert _tracks([(100.0, 0, 39), (300.0, 13, 39)]) == [list(range(40)), list(range(20, 40))]
+    assert _tracks([(100.0, 0, 39), (300.0, 13, 39)]) == [list(range(40)), list(range(15, 40))]
 
 
 def test_who_comes_back_is_the_same_person() -> None:
     assert PATIENCE >= 8
     assert _tracks([(100.0, 0, 15), (105.0, 22, 39)]) == [[*range(16), *range(22, 40)]]
+
+
+def test_who_comes_back_a_little_further_on_is_the_same_person() -> None:
+    assert _tracks([(100.0, 0, 15), (135.0, 22, 39)]) == [[*range(16), *range(22, 40)]]
+
+
+class _Misreading(_FakePose):
+    """Reads a person wherever it is told to look; its first finding is beside the person."""
+
+    def find(self, image: np.ndarray) -> list[Region]:
+        beside = 30.0 if image[0, 0, 0] == 0 else 0.0
+        return [Region(x + beside, 100.0, SIDE, 0.0) for x in self._here(image)]
+
+    def read(self, image: np.ndarray, region: Region) -> Reading | None:
+        return _FakePose([(region.x, 0, FRAMES)]).read(image, region)
+
+
+def test_who_was_misread_is_read_again_where_he_is_found() -> None:
+    [track] = follow(_video(), FRAMES, _Misreading([(300.0, 0, 39)]))  # type: ignore[arg-type]
+    assert track.valid.all()
+    assert track.pixels[:, :, 0].mean(axis=1)[[0, 4, 5, 39]] == pytest.approx([330.0, 330.0, 300.0, 300.0])
 
 
 def test_a_glimpse_is_nobody() -> None:

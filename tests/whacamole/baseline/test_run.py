@@ -166,7 +166,7 @@ def test_the_camera_of_one_run_is_odometry_for_another(dataset: Path, tmp_path: 
     np.testing.assert_array_equal(second["detected"], first["detected"])
     with np.load(tmp_path / "a" / "pair-00.npz") as stored:
         arrays = {key: stored[key] for key in stored.files}
-    arrays["T_world_camera"][:, :3, 3] *= 7.0
+    arrays["T_vo"][:, :3, 3] *= 7.0
     write_arrays(tmp_path / "a" / "pair-00.npz", arrays)
     _run("run", "--data", dataset, "--out", tmp_path / "c", *files, "--masks", "none", "-q")
     third = np.load(tmp_path / "c" / "pair-00.npz")

@@ -63,6 +63,10 @@ class Region:
         """Whether both are about one person: the centres closer than a quarter of the smaller side."""
         return math.hypot(self.x - other.x, self.y - other.y) < 0.25 * min(self.side, other.side)
 
+    def apart(self, other: "Region") -> float:
+        """Between the centres, in sides of the larger region."""
+        return math.hypot(self.x - other.x, self.y - other.y) / max(self.side, other.side)
+
     @classmethod
     def around(cls, middle: FloatArray, edge: FloatArray) -> Self:
         """From the middle of the hips to a point at the person's edge, above the head [px]."""

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from whacamole.baseline.estimators.blazepose import NUM_LANDMARKS, BlazePose, Reading, Region
 from whacamole.baseline.rigid import BoolArray, FloatArray
 
-LOOK_EVERY = 10
+LOOK_EVERY = 5
 """Frames between looks for new people, while everybody known is in view."""
 
 PATIENCE = 30
@@ -17,6 +17,10 @@ PATIENCE = 30
 
 SHORTEST = 10
 """Frames in which somebody must be read to count as a person."""
+
+
+_MISREAD = 0.5
+"""Sides of a region within which somebody found is somebody misread."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,16 +80,33 @@ def _sane(reading: Reading, image: NDArray[np.uint8]) -> bool:
 
 
 def _look(people: list[_Person], frame: int, image: NDArray[np.uint8], pose: BlazePose) -> None:
-    """Find people; those near somebody lost are that person, those near nobody are new."""
-    for region in pose.find(image):
-        if any(person.last == frame and person.region.overlaps(region) for person in people):
+    """Find people; those near somebody lost are that person, those near nobody are new.
+
+    Who is followed but not found, while somebody is found close by whom nobody follows, has been misread
+    (hips taken for shoulders, or the like) and is read again where the finding is.
+    """
+    found = pose.find(image)
+    here = [person for person in people if person.last == frame]
+    misread = [person for person in here if not any(person.region.overlaps(region) for region in found)]
+    for region in found:
+        if any(person.region.overlaps(region) for person in people if person.last == frame):
             continue
-        lost = [p for p in people if frame - PATIENCE <= p.last < frame and p.region.overlaps(region)]
-        person = max(lost, key=lambda p: p.last, default=None) or _Person(region, frame - 1)
+        near = [person for person in misread if person.region.apart(region) < _MISREAD]
+        lost = [p for p in people if p.last < frame and p.region.apart(region) < _reach(frame - p.last)]
+        if near:
+            person = min(near, key=lambda p: p.region.apart(region))
+            misread.remove(person)
+        else:
+            person = min(lost, key=lambda p: p.region.apart(region), default=_Person(region, frame - 1))
         person.region = region
         if _read(person, frame, image, pose) and person not in people:
             people.append(person)
     _drop_doubles(people, frame)
+
+
+def _reach(gap: int) -> float:
+    """How far, in sides of a region, somebody may have got in the frames since he was lost."""
+    return 0.25 + 0.02 * gap if gap <= PATIENCE else 0.0
 
 
 def _drop_doubles(people: list[_Person], frame: int) -> None:

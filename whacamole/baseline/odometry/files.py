@@ -6,10 +6,13 @@ from pathlib import Path
 import numpy as np
 
 from whacamole.baseline.estimators.files import truth_behind
+from whacamole.baseline.footage import Footage
 from whacamole.baseline.odometry.trajectory import Odometry, Scene
 from whacamole.errors import BaselineError, EvaluationError
-from whacamole.evaluation.io.native import read_native
+from whacamole.evaluation.io.arrays import read_npz, take
+from whacamole.evaluation.io.native import camera_of
 from whacamole.evaluation.io.tum import read_tum
+from whacamole.evaluation.records import Recording
 
 
 @dataclass(frozen=True)
@@ -17,7 +20,7 @@ class FilesOdometry:
     """``files``: ``FOLDER/<id>.txt`` or ``.tum``, lines ``time tx ty tz qx qy qz qw``, camera to world.
 
     Whole numbers as times are places in the video, others seconds. Frames without a line are lost frames.
-    ``FOLDER/<id>.npz`` is a prediction of this project: its camera, without its scale.
+    ``FOLDER/<id>.npz`` is a prediction of this project: the odometry that it was made from.
 
     Attributes:
         folder: where the files are, or the one file for a video.
@@ -36,7 +39,7 @@ class FilesOdometry:
         path = self._path(footage.id)
         try:
             if path.suffix == ".npz":
-                recording = read_native(path, footage.id, footage.fps)
+                recording = _former_run(path, footage)
                 rows = np.searchsorted(footage.frame_index, recording.frame_index)
                 inside = np.isin(recording.frame_index, footage.frame_index)
             else:
@@ -66,3 +69,13 @@ class FilesOdometry:
         if path is None:
             raise BaselineError(f"{places[0]}: no trajectory for {footage_id}; write one in the TUM format")
         return path
+
+
+def _former_run(path: Path, footage: Footage) -> Recording:
+    """The odometry in a prediction; of other files of these names the camera."""
+    values = read_npz(path)
+    frame_index = take(values, "frame_index", path, (None,)).astype(np.intp)
+    if "T_vo" in values:
+        values = {"T_world_camera": values["T_vo"]}
+    camera = camera_of(values, path, len(frame_index))
+    return Recording(footage.id, frame_index, footage.fps, (), camera)

@@ -13,7 +13,13 @@ FEWEST = 12
 """Map points that must agree on a camera."""
 
 _MISS = 2.5  # px, by which a point may miss its sighting
-_ANGLE = np.radians(1.2)  # between the rays to a new point
+_ANGLES = np.radians([1.2, 0.6, 0.3, 0.15])
+"""Between the rays to a new point: the widest at which a map can be started; far walls offer no more."""
+
+_ENOUGH = 40  # points for a start at an angle
+_WITNESSES = 8  # frames asked which of several starts is right
+_LOST = 4.0  # px, the most by which a point counts as missed then
+_FAR = 1e4  # baselines to the furthest point that counts as before both cameras
 _KEYFRAME = 3  # every so many frames go into the bundle adjustment
 _PERIOD = 45  # frames between adjustments while the map grows
 _MAP_POINTS = 700  # in a bundle adjustment, those seen most
@@ -34,25 +40,80 @@ class Mapper:
         self._pose = np.tile(np.eye(4), (T, 1, 1))  # world to camera
         self._placed: BoolArray = np.zeros(T, dtype=bool)
         self._points = np.full((N, 3), np.nan)
+        self._angle = float(_ANGLES[0])
 
     def begin(self, i: int, j: int) -> bool:
-        """Start from frames i and j; false where they do not fit together."""
+        """Start from frames i and j; false where they do not fit together.
+
+        Two views of one plane, a floor say, have two explanations and an essential matrix finds either; so
+        all that the two frames allow are tried, and the one that other frames agree with is taken.
+        """
+        self._start = (i, j)
+        guesses = self._guesses(i, j)
+        tried = [(self._disagreement(R, t), n) for n, (R, t) in enumerate(guesses)]
+        if not tried:
+            return False
+        error, best = min(tried)
+        return bool(np.isfinite(error)) and self._start_map(*guesses[best]) >= FEWEST
+
+    def _guesses(self, i: int, j: int) -> list[tuple[FloatArray, FloatArray]]:
+        """Rotations (3, 3) and directions (3,) from frame i to frame j: by the essential matrix, and as if
+        all were one plane."""
         both = self._tracks.tracked[i] & self._tracks.tracked[j]
         first, second = (self._rays(frame, both)[:, :2] for frame in (i, j))
         threshold = 1.0 / float(self._K[i, 0, 0])
+        robust = {"method": self._cv2.USAC_MAGSAC}
+        found = []
         E, inliers = self._cv2.findEssentialMat(
-            first, second, np.eye(3), method=self._cv2.USAC_MAGSAC, prob=0.9999, threshold=threshold
+            first, second, np.eye(3), prob=0.9999, threshold=threshold, **robust
         )
-        if E is None or E.shape != (3, 3):
-            return False
-        agreed, R, t, _ = self._cv2.recoverPose(E, first, second, np.eye(3), mask=inliers.copy())
-        if agreed < FEWEST:
-            return False
-        self._pose[j] = rigid(R, t[:, 0])
+        if E is not None and E.shape == (3, 3):
+            agreed, R, t, _, _ = self._cv2.recoverPose(
+                E, first, second, np.eye(3), distanceThresh=_FAR, mask=inliers.copy()
+            )
+            if agreed >= FEWEST:
+                found.append((R, t[:, 0]))
+        H, _ = self._cv2.findHomography(first, second, ransacReprojThreshold=threshold, **robust)
+        if H is not None:
+            _, turns, ways, _ = self._cv2.decomposeHomographyMat(H, np.eye(3))
+            found += [(R, t[:, 0] / max(np.linalg.norm(t), 1e-12)) for R, t in zip(turns, ways, strict=True)]
+        return found
+
+    def _start_map(self, R: FloatArray, t: FloatArray) -> int:
+        """Begin anew with frame i at the origin and frame j at a guess; the number of points found."""
+        i, j = self._start
+        self._pose[:], self._placed[:], self._points[:] = np.eye(4), False, np.nan
+        self._pose[j] = rigid(R, t)
         self._placed[[i, j]] = True
-        self._start = (i, j)
-        self._triangulate(i, j)
-        return bool(np.isfinite(self._points[:, 0]).sum() >= FEWEST)
+        found = 0
+        for self._angle in _ANGLES:
+            self._triangulate(i, j)
+            found = int(np.isfinite(self._points[:, 0]).sum())
+            if found >= _ENOUGH:
+                break
+        return found
+
+    def _disagreement(self, R: FloatArray, t: FloatArray) -> float:
+        """How badly other frames fit a guess: mean miss [px] of the points they see, at most :data:`_LOST`
+        each; infinite where the guess gives no map."""
+        if self._start_map(R, t) < FEWEST:
+            return float("inf")
+        i, j = self._start
+        near = np.arange(max(0, 2 * i - j), min(len(self._pose), 2 * j - i + 1))
+        misses = []
+        for frame in near[:: max(1, len(near) // _WITNESSES)]:
+            known = self._tracks.tracked[frame] & np.isfinite(self._points[:, 0])
+            if known.sum() >= FEWEST:
+                placed = self._place(int(frame))
+                local = self._points[known] @ self._pose[frame, :3, :3].T + self._pose[frame, :3, 3]
+                seen = self._rays(int(frame), known)[:, :2]
+                miss = np.linalg.norm(local[:, :2] / np.maximum(local[:, 2:], 1e-6) - seen, axis=1)
+                miss = np.minimum(miss * self._K[frame, 0, 0], _LOST)
+                misses.append(float(miss.mean()) if placed else _LOST)
+        # Points that a guess cannot place are no less a miss than those it places wrongly.
+        both = (self._tracks.tracked[i] & self._tracks.tracked[j]).sum()
+        share = np.isfinite(self._points[:, 0]).sum() / both
+        return float(share * np.mean(misses) + (1.0 - share) * _LOST)
 
     def grow(self) -> None:
         """Place all other frames, from the first two outwards, and adjust."""
@@ -131,7 +192,7 @@ class Mapper:
             good &= (local[:, 2] > 0) & (miss < _MISS)
             center = -pose[:, :3].T @ pose[:, 3]
             toward.append((place - center) / np.linalg.norm(place - center, axis=1, keepdims=True))
-        good &= (toward[0] * toward[1]).sum(axis=1) < np.cos(_ANGLE)
+        good &= (toward[0] * toward[1]).sum(axis=1) < np.cos(self._angle)
         self._points[np.flatnonzero(both)[good]] = place[good]
 
     def _adjust(self) -> None:
