@@ -4,6 +4,7 @@ import json
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from whacamole.errors import EvaluationError
 from whacamole.evaluation.evaluate import Bodies, evaluate
@@ -14,6 +15,10 @@ from whacamole.evaluation.report.plots import write_plots
 from whacamole.evaluation.report.table import WRITERS
 from whacamole.evaluation.result import Result
 from whacamole.evaluation.scores import SequenceScore
+from whacamole.evaluation.truth.source import open_truth
+
+if TYPE_CHECKING:
+    from rich.progress import Progress
 
 Print = Callable[[str], None]
 
@@ -111,14 +116,22 @@ def _result(request: Request, protocol: Protocol, err: Print) -> Result:
             request.body_model, _vertices(request.vertices), request.vertex_map, request.joint_regressor
         )
 
+        source = open_truth(request.data)
+        folders = _named(request.pred)
+        bar = _bar(quiet=request.quiet)
+        sequences = len(source.ids(request.split)[: request.limit])
+        task = bar.add_task("scoring", total=sequences * len(folders))
+
         def progress(method: str, sequence_id: str, outcome: SequenceScore | str) -> None:
+            bar.update(task, advance=1, description=f"{sequence_id} · {method}")
             if isinstance(outcome, str):
                 err(f"{method} · {sequence_id}: {outcome}")
 
-        scored = evaluate(
-            request.data, _named(request.pred), protocol, split=request.split, format=request.pred_format,
-            bodies=bodies, jobs=request.jobs, limit=request.limit, progress=progress,
-        )  # fmt: skip
+        with bar:
+            scored = evaluate(
+                source, folders, protocol, split=request.split, format=request.pred_format, bodies=bodies,
+                jobs=request.jobs, limit=request.limit, progress=progress,
+            )  # fmt: skip
         results.insert(0, scored)
     if not results:
         raise EvaluationError("nothing to score: give --data and --pred, or --with a saved result")
@@ -126,6 +139,16 @@ def _result(request: Request, protocol: Protocol, err: Print) -> Result:
     for other in others:
         first = first.joined(other)
     return first
+
+
+def _bar(*, quiet: bool) -> "Progress":
+    """Progress on a terminal; nothing where errors go to a file."""
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    console = Console(stderr=True)
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    return Progress(*columns, console=console, disable=quiet or not console.is_terminal, transient=True)
 
 
 def _named(given: tuple[str, ...]) -> dict[str, Path]:

@@ -19,12 +19,17 @@ from whacamole.evaluation.result import Result
 MAX_PLOTTED = 24
 """Sequences with plots in the report: the worst first, so that the file stays small."""
 
+MAX_OPEN = 30
+"""Rows of a breakdown that is open from the start."""
+
 _STYLE = """
-body{font:15px/1.5 system-ui,sans-serif;max-width:1100px;margin:2rem auto;padding:0 1rem;color:#222}
+body{font:15px/1.5 system-ui,sans-serif;max-width:1280px;margin:2rem auto;padding:0 1rem;color:#222}
 table{border-collapse:collapse;margin:.4rem 0 1.2rem;font-variant-numeric:tabular-nums}
 th,td{padding:.2rem .7rem;text-align:right;border-bottom:1px solid #ddd}
 th:first-child,td:first-child{text-align:left}
-th{border-bottom:2px solid #222;font-weight:600;white-space:nowrap}
+th{border-bottom:2px solid #222;font-weight:600;white-space:nowrap;vertical-align:bottom}
+th small{display:block;font-weight:400;color:#555}
+td:first-child{white-space:nowrap}
 td.best{font-weight:700}
 td.words{text-align:left}
 .scroll{overflow-x:auto}
@@ -57,8 +62,10 @@ def as_html(result: Result) -> str:
         "<h2>All metrics</h2>",
         *(_table(table) for table in group_tables(result)),
         "<h2>Where</h2>",
-        *(_table(table) for by in GROUP_TITLES if (table := breakdown(result, by)) is not None),
+        *(_folded(table) for by in GROUP_TITLES if (table := breakdown(result, by)) is not None),
         "<h2>Sequences</h2>",
+        "<p class=note>Black: truth. Solid: people, dashed: the camera, dot: the first frame. Each path is "
+        "aligned as its ATE is.</p>",
         *_plots(result),
         _notes(result),
         _choices(result),
@@ -67,9 +74,15 @@ def as_html(result: Result) -> str:
     return "\n".join(part for part in parts if part)
 
 
-def _table(table: Table) -> str:
+def _folded(table: Table) -> str:
+    """A table that is closed at first if it is long."""
+    opened = " open" if len(table.rows) <= MAX_OPEN else ""
+    return f"<details{opened}><summary>{escape(table.title)}</summary>{_table(table, titled=False)}</details>"
+
+
+def _table(table: Table, *, titled: bool = True) -> str:
     best = table.best()
-    head = "".join(f"<th>{escape(c.heading)}</th>" for c in table.columns)
+    head = "".join(f"<th>{escape(c.label)}<small>{escape(c.hint)}</small></th>" for c in table.columns)
     rows = []
     for r, cells in enumerate(table.cells()):
         marked = "".join(
@@ -78,9 +91,9 @@ def _table(table: Table) -> str:
         )
         rows.append(f"<tr><td>{escape(cells[0])}</td>{marked}</tr>")
     notes = "".join(f"<p class=note>{escape(note)}</p>" for note in table.notes)
+    title = f"<h3>{escape(table.title)}</h3>" if titled else ""
     return (
-        f"<h3>{escape(table.title)}</h3><div class=scroll><table>"
-        f"<thead><tr><th>{escape(table.first)}</th>{head}</tr></thead>"
+        f"{title}<div class=scroll><table><thead><tr><th>{escape(table.first)}</th>{head}</tr></thead>"
         f"<tbody>{''.join(rows)}</tbody></table></div>{notes}"
     )
 

@@ -57,7 +57,7 @@ def _from_above(
     label: str, path: Points, plane: Points, colour: str, camera: bool, width: float = 1.6
 ) -> Line:
     flat = path @ plane.T
-    return Line(label, flat[:, 0], flat[:, 1], colour, dashed=camera, width=width)
+    return Line(label, flat[:, 0], flat[:, 1], colour, dashed=camera, width=width, dotted=True)
 
 
 def error_over_time(scores: Sequence[tuple[str, SequenceScore]], key: str | None = None) -> str | None:

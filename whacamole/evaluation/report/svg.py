@@ -11,6 +11,9 @@ Curve = npt.NDArray[np.float64]
 
 COLOURS = ("#1b6ca8", "#d1495b", "#2e8b57", "#8a5a9e", "#c77d0a", "#3a9ba6", "#7a7a7a")
 
+_LONGEST = 16
+"""Characters of a name in the legend."""
+
 
 @dataclass(frozen=True, eq=False)
 class Line:
@@ -21,6 +24,7 @@ class Line:
         x, y: (N,), broken where either is NaN.
         colour: of the stroke.
         dashed: a dashed stroke.
+        dotted: a dot where it begins.
         width: of the stroke [px].
     """
 
@@ -30,6 +34,7 @@ class Line:
     colour: str
     dashed: bool = False
     width: float = 1.6
+    dotted: bool = False
 
 
 @dataclass(frozen=True)
@@ -38,10 +43,10 @@ class _Axes:
 
     x: tuple[float, float]
     y: tuple[float, float]
-    width: int = 460
+    width: int = 590
     height: int = 320
     left: int = 54
-    right: int = 448
+    right: int = 458
     top: int = 26
     bottom: int = 280
 
@@ -95,6 +100,7 @@ def chart(lines: Sequence[Line], title: str, x_label: str, y_label: str, *, equa
         if path:
             stroke = f'stroke="{line.colour}" stroke-width="{line.width:g}"{_dash(line)}'
             parts.append(f'<path d="{path}" fill="none" {stroke}/>')
+            parts += _start(line, axes) if line.dotted else []
     return "".join([*parts, *_legend(lines, axes), "</svg>"])
 
 
@@ -102,13 +108,24 @@ def _dash(line: Line) -> str:
     return ' stroke-dasharray="5 3"' if line.dashed else ""
 
 
+def _start(line: Line, axes: _Axes) -> list[str]:
+    """A dot at the first point of a line."""
+    at = np.flatnonzero(np.isfinite(line.x) & np.isfinite(line.y))[:1]
+    x, y = axes.to_x(line.x[at]), axes.to_y(line.y[at])
+    return [
+        f'<circle cx="{a:.1f}" cy="{b:.1f}" r="3.5" fill="{line.colour}"/>' for a, b in zip(x, y, strict=True)
+    ]
+
+
 def _legend(lines: Sequence[Line], axes: _Axes) -> list[str]:
+    """Names beside the box, where no line runs."""
     parts = []
     for number, line in enumerate(line for line in lines if line.label):
-        x, y = axes.right - 8, axes.top + 12 + 14 * number
+        x, y = axes.right + 10, axes.top + 12 + 16 * number
         stroke = f'stroke="{line.colour}" stroke-width="2"{_dash(line)}'
-        parts.append(f'<path d="M{x - 18} {y - 4}h18" {stroke}/>')
-        parts.append(f'<text x="{x - 23}" y="{y}" text-anchor="end">{escape(line.label)}</text>')
+        parts.append(f'<path d="M{x} {y - 4}h18" {stroke}/>')
+        name = line.label if len(line.label) <= _LONGEST else f"{line.label[: _LONGEST - 1]}…"
+        parts.append(f'<text x="{x + 23}" y="{y}">{escape(name)}</text>')
     return parts
 
 

@@ -29,12 +29,21 @@ class Column:
     @property
     def heading(self) -> str:
         """Label with its unit and the way that is better."""
-        arrow = {"lower": " ↓", "higher": " ↑", "one": " → 1"}.get(self.better, "")
-        return f"{self.label}{f' [{self.unit}]' if self.unit else ''}{arrow}"
+        unit = f" [{self.unit}]" if self.unit else ""
+        return f"{self.label}{unit}{f' {self._arrow}' if self._arrow else ''}"
+
+    @property
+    def hint(self) -> str:
+        """Unit and the way that is better."""
+        return f"{self.unit} {self._arrow}".strip()
+
+    @property
+    def _arrow(self) -> str:
+        return {"lower": "↓", "higher": "↑", "one": "→ 1"}.get(self.better, "")
 
     def show(self, value: float) -> str:
         """A value as text, "–" for none."""
-        return f"{value:.{self.digits}f}" if np.isfinite(value) else "–"
+        return f"{round(value, self.digits) + 0.0:.{self.digits}f}" if np.isfinite(value) else "–"
 
 
 @dataclass(frozen=True)
