@@ -1,4 +1,4 @@
-"""What docs/extending.md tells to write works: its blocks run, one after the other, in a process of their own."""
+"""What docs/extending.md tells to write works: its blocks run, in their order, in one process."""
 
 import re
 import subprocess

@@ -18,5 +18,6 @@ def on_page_markdown(markdown: str, **_: Any) -> str:
 
 
 def on_page_content(html: str, **_: Any) -> str:
-    """Sphinx roles of docstrings, as ``:class:`Sequence```, become the bare names."""
-    return _ROLE.sub(r"<code>\1</code>", html)
+    """Sphinx roles of docstrings, as ``:class:`Sequence```, become bare names; ``::`` before code goes."""
+    named = _ROLE.sub(r"<code>\1</code>", html)
+    return named.replace("<p>::</p>", "").replace("::</p>", ":</p>")

@@ -11,7 +11,7 @@ make demo     set everything up, render the embedded motions, name a picture to 
 make test     set everything up, run the tests
 make lint     ruff, mypy --strict, import rules
 make bench    run the benchmarks and print their ratios
-make docs     check the documentation: links, snippets, option texts
+make docs     build the documentation into build/site, strictly, and see that it loads nothing from elsewhere
 make assets   build the embedded data again from its sources
 make setup    only set up; afterwards .venv/bin/whacamole is the command
 make help     this text
@@ -54,8 +54,8 @@ bench() {
 }
 
 docs() {
-  prepare test
-  .venv/bin/python -m pytest tests/test_project.py tests/test_documentation.py
+  prepare docs
+  .venv/bin/python -m tools.docs.build
 }
 
 assets() {
