@@ -4,7 +4,8 @@
 
     RenderJobError           a job cannot be built, read or rendered; the message is one line for the user
     ├── EngineError    this machine cannot run the engine; the message names the remedy
-    └── WorkerError         the child process failed; trying again may help
+    ├── WorkerError    the child process failed; trying again may help
+    └── PostponedError nothing failed, but it cannot be done at present; trying later will help
 """
 
 from __future__ import annotations
@@ -31,3 +32,18 @@ class WorkerError(RenderJobError):
     def __init__(self, message: str, log: Path) -> None:
         super().__init__(message)
         self.log = log
+
+    def __reduce__(self) -> tuple[type[WorkerError], tuple[str, Path]]:
+        return type(self), (str(self), self.log)  # it may come back from another machine
+
+
+class PostponedError(RenderJobError):
+    """A task cannot be done at present (somebody else does it, the disk is full); no attempt has failed.
+
+    Attributes:
+        patience: seconds for which it makes sense to ask again; None is for ever.
+    """
+
+    def __init__(self, message: str, patience: float | None = None) -> None:
+        super().__init__(message)
+        self.patience = patience

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import os
 import signal
@@ -35,6 +36,12 @@ def die_with_parent(parent: int | None = None) -> None:
         os._exit(ORPHANED)
 
     threading.Thread(target=watch, daemon=True, name="parent-watch").start()
+
+
+def be_first_to_go() -> None:
+    """Let the kernel kill this process, not its parent, where memory runs out (Linux)."""
+    with contextlib.suppress(OSError):
+        Path("/proc/self/oom_score_adj").write_text("500", encoding="ascii")
 
 
 def child_environment() -> dict[str, str]:

@@ -9,7 +9,7 @@ import signal
 import subprocess
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any
@@ -40,6 +40,9 @@ def watch_child(
     *,
     timeout: float | None,
     memory_limit_mb: float | None,
+    time_limit: float | None = None,
+    environment: Mapping[str, str] | None = None,
+    stop: threading.Event | None = None,
 ) -> ChildEnd:
     """Run a command to its end. However this function is left, the child is gone.
 
@@ -50,21 +53,25 @@ def watch_child(
         on_event: told every JSON object that the child prints; other lines are ignored.
         timeout: seconds without a line after which the child counts as hung.
         memory_limit_mb: resident memory that it may hold.
+        time_limit: seconds that it may take in all.
+        environment: variables for it alone, over our own.
+        stop: ends the child when it is set.
 
     Raises:
-        WorkerError: the child hung or took too much memory, and was killed.
+        WorkerError: the child hung, took too long or too much memory, or was to stop; it was killed.
     """
+    limits = _Limits(timeout, time_limit, memory_limit_mb, stop)
     with log.open("ab") as errors:
         child = subprocess.Popen(
             command,
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=errors,
-            env=child_environment(),
+            env=child_environment() | dict(environment or {}),
             start_new_session=True,
         )
     try:
-        peak = _follow(child, log, on_event, timeout, memory_limit_mb)
+        peak = _follow(child, log, on_event, limits)
         return ChildEnd(child.wait(), peak)
     finally:
         child.kill()
@@ -79,32 +86,45 @@ def describe_end(end: ChildEnd) -> str:
     return f"the process was ended by {signal.Signals(-end.status).name}{hint}"
 
 
+@dataclass(frozen=True)
+class _Limits:
+    silence: float | None
+    time: float | None
+    memory_mb: float | None
+    stop: threading.Event | None
+
+    def breach(self, silent: float, spent: float, used_mb: float) -> str:
+        """What a child has overstepped, in words; empty where all is well."""
+        if self.stop is not None and self.stop.is_set():
+            return "it was stopped"
+        if self.memory_mb is not None and used_mb > self.memory_mb:
+            return f"the process was killed at {used_mb:.0f} MB, over the limit of {self.memory_mb:.0f} MB"
+        if self.silence is not None and silent > self.silence:
+            return f"nothing was finished in {self.silence:.0f} s, the process was killed"
+        if self.time is not None and spent > self.time:
+            return f"it took longer than the limit of {self.time:.0f} s, the process was killed"
+        return ""
+
+
 def _follow(
-    child: subprocess.Popen[bytes],
-    log: Path,
-    on_event: Callable[[Event], None],
-    timeout: float | None,
-    memory_limit_mb: float | None,
+    child: subprocess.Popen[bytes], log: Path, on_event: Callable[[Event], None], limits: _Limits
 ) -> float:
     """Pass on events until the child closes its stdout; return the peak memory in MB."""
     assert child.stdout is not None
     lines: queue.Queue[bytes | None] = queue.Queue()
     reader = threading.Thread(target=_read_lines, args=(child.stdout, lines), daemon=True)
     reader.start()
-    heard = time.monotonic()
+    began = heard = time.monotonic()
     peak = 0.0
     while True:
         used = _memory_mb(child.pid)
         peak = max(peak, used)
-        if memory_limit_mb is not None and used > memory_limit_mb:
-            limit = f"the limit of {memory_limit_mb:.0f} MB"
-            raise WorkerError(f"the process was killed at {used:.0f} MB, over {limit} (log: {log})", log)
+        now = time.monotonic()
+        if breach := limits.breach(now - heard, now - began, used):
+            raise WorkerError(f"{breach} (log: {log})", log)
         try:
             line = lines.get(timeout=WATCH_INTERVAL_S)
         except queue.Empty:
-            if timeout is not None and time.monotonic() - heard > timeout:
-                reason = f"nothing was finished in {timeout:.0f} s, the process was killed"
-                raise WorkerError(f"{reason} (log: {log})", log) from None
             continue
         if line is None:
             reader.join()

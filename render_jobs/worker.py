@@ -26,7 +26,7 @@ from render_jobs.devices import parse_device
 from render_jobs.errors import EngineError, RenderJobError
 from render_jobs.images import is_complete
 from render_jobs.job import RenderJob
-from render_jobs.processes import die_with_parent
+from render_jobs.processes import be_first_to_go, die_with_parent
 from render_jobs.profile import IMPORTING, LOADING, STARTING, Profile, since_start
 from render_jobs.protocol import BAD_JOB, ENGINES, FAILED, LOG_FILE, NO_ENGINE
 from render_jobs.storage import OUTPUT_FOLDER
@@ -76,6 +76,7 @@ def main(arguments: Sequence[str] | None = None) -> NoReturn:
     options = _parse(arguments)
     if options.parent:
         die_with_parent(options.parent)
+    be_first_to_go()
     reporter = Reporter(_take_over_output(options.job))
     profile = Profile()
     profile.add(STARTING, since_start())

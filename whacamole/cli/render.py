@@ -86,11 +86,52 @@ def render(
     recipe: Annotated[
         Path | None, typer.Option(help="YAML file of these options; what is typed here goes over it.")
     ] = None,
-    jobs: Annotated[int, typer.Option(min=1, help="Sequences made at the same time.")] = 1,
+    jobs: Annotated[
+        int | None,
+        typer.Option(
+            min=1,
+            help="Sequences made at the same time; with --cluster slurm, most jobs.",
+            show_default="what suits the machine",
+        ),
+    ] = None,
+    threads: Annotated[
+        int, typer.Option(min=0, help="Processor threads of each sequence; 0: an even share.")
+    ] = 0,
     device: Annotated[
         Literal["auto", "cpu", "gpu"],
         typer.Option(help="Where to render: auto takes a GPU where Blender finds one."),
     ] = "auto",
+    cluster: Annotated[
+        str | None,
+        typer.Option(
+            help="Dask scheduler that does the work, as tcp://host:8786; or slurm.",
+            show_default="this machine",
+        ),
+    ] = None,
+    cluster_config: Annotated[
+        Path | None, typer.Option(help="YAML file on the jobs of --cluster slurm (docs/scale.md).")
+    ] = None,
+    shard: Annotated[
+        str | None,
+        typer.Option(help="Make one part of the work, as 2/8; for job arrays.", show_default="all of it"),
+    ] = None,
+    attempts: Annotated[int, typer.Option(min=1, help="How often a sequence is tried.")] = 3,
+    silence: Annotated[
+        float, typer.Option(min=1, help="Seconds a frame may take before its process counts as hung.")
+    ] = 1800,
+    time_limit: Annotated[
+        float | None,
+        typer.Option(min=1, help="Seconds an attempt at a sequence may take.", show_default="no limit"),
+    ] = None,
+    memory_limit: Annotated[
+        float | None,
+        typer.Option(
+            min=0.1, help="GB a process may hold before it is ended.", show_default="90 % of the machine's"
+        ),
+    ] = None,
+    disk_check: Annotated[
+        bool, typer.Option("--disk-check/--no-disk-check", help="Refuse what the disk cannot hold.")
+    ] = True,
     profile: Annotated[
         bool, typer.Option("--profile", help="End with a table of where the time went.")
     ] = False,
@@ -102,6 +143,7 @@ def render(
 
     Stopped at any moment and started again with the same options, it goes on where it was.
     """
+    from whacamole.production.means import Limits, Means, Shard
     from whacamole.production.run import produce
     from whacamole.recipe import load_recipe
 
@@ -114,11 +156,25 @@ def render(
         "allow_breaches": allow_breaches,
     }  # fmt: skip
     overrides: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
+    means = Means(
+        jobs=jobs,
+        cluster=cluster,
+        cluster_config=cluster_config,
+        shard=Shard.parse(shard) if shard else None,
+        attempts=attempts,
+        limits=Limits(
+            threads=threads,
+            device=device,
+            silence_s=silence,
+            time_s=time_limit,
+            memory_mb=memory_limit * 1000 if memory_limit else None,
+        ),
+        check_disk=disk_check,
+    )
     result = produce(
         load_recipe(recipe, overrides),
         out,
-        jobs=jobs,
-        device=device,
+        means,
         dry_run=dry_run,
         quiet=quiet or json_output,
     )

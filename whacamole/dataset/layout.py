@@ -77,6 +77,16 @@ class DatasetLayout:
         """A file for each sequence: where the time went that it took."""
         return self.work / "profiles"
 
+    @property
+    def logs(self) -> Path:
+        """Logs of sequences that took more than one attempt."""
+        return self.work / "logs"
+
+    @property
+    def runs(self) -> Path:
+        """A file for each run that is at work."""
+        return self.work / "runs"
+
     def sequence(self, sequence_id: str) -> SequenceLayout:
         """Return the place of a finished sequence."""
         return SequenceLayout(self.sequences / _checked(sequence_id))

@@ -1,20 +1,36 @@
-"""One attempt at one sequence, seen from the parent: start the worker, listen, tell how it ended."""
+"""One attempt at one sequence: start its worker, watch it, tell how it ended.
 
-import json
-import subprocess
-import sys
-from collections.abc import Callable
-from pathlib import Path
+This is what a farm hands to its executor, so it may run in a thread here or in a process on another machine.
+"""
+
+import contextlib
+import errno
+import os
+import threading
+import time
 from typing import Any
 
+from render_jobs.clusters import slots_here
+from render_jobs.errors import PostponedError, WorkerError
+from render_jobs.machine import lease_gpu, usable_cores, usable_memory_mb, visible_gpus
+from render_jobs.watch import describe_end, watch_child
 from whacamole.dataset import DatasetLayout
 from whacamole.dataset.files import write_json
-from whacamole.production.worklist import SequenceOrder
+from whacamole.production.means import Limits
+from whacamole.production.place import attempts_so_far, is_finished, lock_of, note_attempt
+from whacamole.production.pulse import host_name
+from whacamole.production.space import check_room
+from whacamole.production.worklist import SequenceOrder, failure_note
 
-__all__ = ["AttemptError", "Listener", "attempt"]
+__all__ = ["AttemptError", "attempt"]
 
-Listener = Callable[[str, dict[str, Any]], None]
-"""Called with the sequence id and what its worker says."""
+DISK_FULL = (errno.ENOSPC, errno.EDQUOT)
+
+MEMORY_SHARE = 0.9
+"""Of what the machine gives; a process that holds more takes the machine down with it."""
+
+GRACE_S = 60.0
+"""The watcher of the worker waits longer than the worker waits for its renderer, which knows more to say."""
 
 
 class AttemptError(Exception):
@@ -29,70 +45,99 @@ class AttemptError(Exception):
         self.again = again
 
 
-def attempt(
-    order: SequenceOrder,
-    listen: Listener,
-    *,
-    threads: int,
-    device: str,
-    running: Callable[[subprocess.Popen[str]], None],
-) -> None:
-    """Run the worker for ``order`` to its end.
+def attempt(order: SequenceOrder, limits: Limits, stop: threading.Event | None = None) -> bool:
+    """Make a sequence in a process of its own.
 
     Args:
-        listen: gets every event of the worker.
-        threads: processor threads it may use; 0 means all.
-        device: "auto", "cpu" or "gpu".
-        running: gets the process, so that the caller can stop it.
+        stop: ends the attempt when it is set.
+
+    Returns:
+        whether it was made here; False where it was there already.
 
     Raises:
         AttemptError: the sequence is not there.
+        PostponedError: somebody else is making it, or the disk is full.
     """
-    folder = DatasetLayout(order.root).work_of(order.sequence_id)
-    folder.mkdir(parents=True, exist_ok=True)
-    write_json(folder / "order.json", {**order.as_dict(), "threads": threads, "device": device})
-    log = folder / "worker.log"
-    with log.open("ab") as errors:
-        process = subprocess.Popen(
-            [sys.executable, "-m", "whacamole.production.worker", str(folder / "order.json")],
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=errors,
-            text=True,
-            encoding="utf-8",
+    if is_finished(order.root, order.sequence_id):
+        return False
+    if not (order.root / "recipe.json").exists():
+        raise AttemptError(
+            f"{order.sequence_id}: {order.root} is not there on {host_name()}: every worker needs the "
+            "folders of motions and dataset under the same paths"
         )
-        running(process)
-        failure: dict[str, Any] | None = None
-        assert process.stdout is not None
-        for line in process.stdout:
-            event = _event(line)
-            if event.get("event") == "failed":
-                failure = event
-            elif event:
-                listen(order.sequence_id, event)
-        code = process.wait()
-    if code == 0:
-        return
-    if failure is not None:
-        raise AttemptError(str(failure["error"]), again=bool(failure["again"]))
-    raise AttemptError(
-        f"{order.sequence_id}: its process ended with {_ending(code)}; see {log}{_last_line(log)}"
-    )
-
-
-def _event(line: str) -> dict[str, Any]:
-    """Return the event a line holds; a library's stray print is no event."""
+    work = DatasetLayout(order.root).work_of(order.sequence_id)
+    began = time.time()
     try:
-        value = json.loads(line)
-    except json.JSONDecodeError:
-        return {}
-    return value if isinstance(value, dict) else {}
+        check_room(order, limits.disk_patience_s)
+        work.mkdir(parents=True, exist_ok=True)
+        with lock_of(work, order.sequence_id):
+            failure_note(order).unlink(missing_ok=True)
+            write_json(work / "order.json", order.as_dict())
+        _run_worker(order, limits, stop)
+    except OSError as error:
+        if error.errno in DISK_FULL:
+            raise _disk_full(order, limits) from error
+        raise AttemptError(f"{order.sequence_id}: {error}") from error
+    except AttemptError as error:
+        with contextlib.suppress(OSError):
+            number = len(attempts_so_far(work)) + 1
+            facts = {"attempt": number, "host": host_name(), "began": began, "seconds": time.time() - began}
+            note_attempt(work, {**facts, "error": str(error)})
+        raise
+    return True
 
 
-def _ending(code: int) -> str:
-    return f"signal {-code}" if code < 0 else f"exit code {code}"
+def _run_worker(order: SequenceOrder, limits: Limits, stop: threading.Event | None) -> None:
+    work = DatasetLayout(order.root).work_of(order.sequence_id)
+    log = work / "worker.log"
+    failure: dict[str, Any] = {}
+
+    def hear(event: dict[str, Any]) -> None:
+        if event.get("event") == "failed":
+            failure.update(event)
+
+    memory = limits.memory_mb or MEMORY_SHARE * usable_memory_mb()
+    options = {
+        "--threads": limits.threads or max(1, usable_cores() // slots_here()),
+        "--device": limits.device,
+        "--silence": limits.silence_s,
+        "--memory": memory,
+        "--parent": os.getpid(),
+        "--run": limits.run,
+    }
+    words = [str(word) for pair in options.items() for word in pair]
+    gpus = () if limits.device == "cpu" else visible_gpus()
+    try:
+        with lease_gpu(gpus) as gpu:
+            end = watch_child(
+                [*limits.worker, str(work / "order.json"), *words],
+                log,
+                hear,
+                timeout=limits.silence_s + GRACE_S,
+                time_limit=limits.time_s,
+                memory_limit_mb=memory,
+                environment=None if gpu is None else gpu.environment,
+                stop=stop,
+            )
+    except WorkerError as error:
+        raise AttemptError(f"{order.sequence_id}: {error}") from error
+    if end.status == 0:
+        return
+    if failure.get("disk_full"):
+        raise _disk_full(order, limits)
+    if failure.get("postponed"):
+        raise PostponedError(str(failure["error"]))
+    check_room(order, limits.disk_patience_s)  # what fails for want of room need not say so
+    if failure:
+        raise AttemptError(str(failure["error"]), again=bool(failure["again"]))
+    raise AttemptError(f"{order.sequence_id}: {describe_end(end)}; see {log}{_last_line(order)}")
 
 
-def _last_line(log: Path) -> str:
+def _disk_full(order: SequenceOrder, limits: Limits) -> PostponedError:
+    return PostponedError(f"{order.root}: the disk is full; make room", limits.disk_patience_s)
+
+
+def _last_line(order: SequenceOrder) -> str:
+    log = DatasetLayout(order.root).work_of(order.sequence_id) / "worker.log"
     lines = log.read_text(encoding="utf-8", errors="replace").strip().splitlines()
     return f" ({lines[-1].strip()})" if lines else ""

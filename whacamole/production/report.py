@@ -9,7 +9,6 @@ from rich.console import Console
 from rich.table import Table
 
 from whacamole.dataset import DatasetLayout, read_summary
-from whacamole.motion import FPS
 from whacamole.production.profiling import profile_as_dict, profile_table, read_profiles
 from whacamole.production.worklist import Worklist
 from whacamole.viewing.places import Places
@@ -104,9 +103,7 @@ class Production:
     def _plan_table(self) -> Table:
         table = Table("sequence", "motion", "format", "people", "frames")
         for order in self.worklist.orders:
-            whole, asked = order.motion.num_frames, order.recipe.frames
-            filmed = None if whole is None else int((whole - 1) * order.recipe.fps / FPS) - 1
-            shown = "?" if filmed is None else str(min(filmed, asked or filmed))
+            shown = "?" if order.motion.num_frames is None else str(order.frames)
             people = str(order.motion.num_people)
             table.add_row(order.sequence_id, str(order.motion.path), order.motion.source, people, shown)
         return table

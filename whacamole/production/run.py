@@ -1,28 +1,31 @@
-"""Making all sequences of a recipe, some at a time, each in a process of its own."""
+"""Making all sequences of a recipe, some at a time, each in a process of its own, here or on a cluster."""
 
-import os
-import subprocess
+import contextlib
 import threading
 import time
-from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from rich.console import Console
-
+from render_jobs.clusters import Crew, dask_crew, local_crew, read_slurm_config, slurm_crew
+from render_jobs.errors import PostponedError
 from render_jobs.farm import run_farm
-from render_jobs.probe import choose_engine
+from render_jobs.machine import usable_cores
 from whacamole import __version__
-from whacamole.dataset import DatasetLayout, open_dataset, read_json, write_index
+from whacamole.dataset import DatasetLayout, open_dataset, write_index
 from whacamole.dataset.card import write_card
 from whacamole.dataset.files import write_json
 from whacamole.dataset.splitting import refresh_splits
 from whacamole.dataset.statistics import collect
-from whacamole.errors import DatasetError
-from whacamole.production.attempt import AttemptError, attempt
-from whacamole.production.progress import ProgressDisplay
+from whacamole.errors import DatasetError, RecipeError
+from whacamole.production.attempt import DISK_FULL, AttemptError, attempt
+from whacamole.production.means import Limits, Means
+from whacamole.production.opening import index_lock, open_dataset_for, settle_engine
+from whacamole.production.progress import Monitor
+from whacamole.production.pulse import RunRecord, run_name
 from whacamole.production.report import Production
 from whacamole.production.worklist import SequenceOrder, Worklist, failure_note, work_of
 from whacamole.recipe import Recipe
@@ -30,129 +33,146 @@ from whacamole.viewing.page import write_page
 
 __all__ = ["Production", "produce"]
 
-MAY_DIFFER = frozenset({"motions", "shots_per_motion", "limit", "test_fraction", "allow_breaches"})
-"""What may change between two runs into one dataset: it adds sequences, but alters none."""
+Work = Callable[[SequenceOrder], bool]
 
 
 def produce(
-    recipe: Recipe,
-    out: Path,
-    *,
-    jobs: int = 1,
-    device: str = "auto",
-    dry_run: bool = False,
-    quiet: bool = False,
+    recipe: Recipe, out: Path, means: Means | None = None, *, dry_run: bool = False, quiet: bool = False
 ) -> Production:
     """Make, or finish, the dataset of ``recipe`` in the folder ``out``.
 
     Args:
-        jobs: sequences made at the same time.
-        device: "auto", "cpu" or "gpu".
+        means: with what; none: this machine, as suits it.
         dry_run: only say what would be made.
         quiet: show no progress.
 
     Raises:
         MotionError: there is no motion to film.
         RecipeError, BodyModelError: the recipe cannot be carried out.
-        DatasetError: ``out`` holds a dataset of another recipe, or something else.
+        DatasetError: ``out`` holds a dataset of another recipe or something else, or the disk is full.
+        EngineError: nothing renders here, or the cluster cannot be reached.
     """
+    means = means or Means()
     layout = DatasetLayout(out.resolve())
-    worklist = work_of(recipe, layout.root)
+    worklist = _worklist(recipe, layout, means)
     if dry_run:
         return Production(layout.root, worklist, {}, 0.0, {}, dry_run=True)
-    recipe = _with_engine(recipe, layout, quiet)
-    _check_recipe(layout, recipe)
-    facts = _facts(recipe)
-    worklist = work_of(recipe, layout.root)
-    _open_dataset(layout, recipe)
-    started = time.monotonic()
-    failures = _make_all(worklist, jobs, device, quiet)
-    write_index(layout, facts, recipe.test_fraction)
-    sides = refresh_splits(layout, recipe.test_fraction)  # by the rule of `split`, companions counted
-    if layout.finished():
-        numbers = collect(open_dataset(layout.root))
-        write_card(layout, numbers)
-        write_page(layout, numbers)
-    finished = work_of(recipe, layout.root)
+    settled = settle_engine(recipe, layout, quiet)
+    facts_of_dataset = _facts(settled)
+    try:
+        settled = open_dataset_for(settled, layout, engine_is_ours=recipe.engine == "auto")
+        worklist = _worklist(settled, layout, means)
+        started = time.monotonic()
+        failures = _make_all(worklist, layout, means, quiet)
+        with index_lock(layout):
+            write_index(layout, {**facts_of_dataset, "recipe": settled.save_as_dict()}, settled.test_fraction)
+            sides = refresh_splits(layout, settled.test_fraction)  # companions counted
+            if layout.finished():
+                numbers = collect(open_dataset(layout.root))
+                write_card(layout, numbers)
+                write_page(layout, numbers)
+    except OSError as error:
+        if error.errno not in DISK_FULL:
+            raise
+        raise DatasetError(f"{layout.root}: the disk is full; make room, the same command goes on") from error
+    finished = _worklist(settled, layout, means)
     seconds = time.monotonic() - started
     kept = len(worklist.orders) - len(worklist.open)
     return Production(layout.root, finished, failures, seconds, sides, kept=kept)
 
 
-def _with_engine(recipe: Recipe, layout: DatasetLayout, quiet: bool) -> Recipe:
-    """Settle "auto": what the dataset was begun with, else the best engine that this machine can run.
-
-    Raises:
-        EngineError: nothing can render here.
-    """
-    if recipe.engine != "auto":
-        return recipe
-    kept = layout.root / "recipe.json"
-    if kept.exists():
-        engine, note = str(read_json(kept)["engine"]), ""
-    else:
-        engine, note = choose_engine()
-    if note and not quiet:
-        Console(stderr=True, soft_wrap=True).print(note, markup=False)
-    return Recipe.model_validate({**recipe.save_as_dict(), "engine": engine})
+def _worklist(recipe: Recipe, layout: DatasetLayout, means: Means) -> Worklist:
+    whole = work_of(recipe, layout.root)
+    return whole.part(means.shard.index, means.shard.count) if means.shard else whole
 
 
-@dataclass
-class _Processes:
-    """The workers that run now, so that none outlives an interrupted run."""
-
-    running: set[subprocess.Popen[str]] = field(default_factory=set)
-    lock: threading.Lock = field(default_factory=threading.Lock)
-    stopped: bool = False
-
-    def add(self, process: subprocess.Popen[str]) -> None:
-        with self.lock:
-            self.running = {other for other in self.running if other.poll() is None} | {process}
-            if self.stopped:
-                process.terminate()
-
-    def stop(self) -> None:
-        with self.lock:
-            self.stopped = True
-            for process in self.running:
-                process.terminate()
-
-
-def _make_all(worklist: Worklist, jobs: int, device: str, quiet: bool) -> dict[str, str]:
+def _make_all(worklist: Worklist, layout: DatasetLayout, means: Means, quiet: bool) -> dict[str, str]:
     """Make the open orders; return the one-line error of each that failed."""
-    threads = max(1, (os.cpu_count() or 1) // jobs)
-    processes = _Processes()
+    orders = worklist.open
+    if not orders:
+        return {}
     failures: dict[str, str] = {}
-    total = len(worklist.orders)
-    with (
-        ProgressDisplay(total, total - len(worklist.open), quiet) as display,
-        ThreadPoolExecutor(jobs) as pool,
-    ):
-
-        def make(order: SequenceOrder) -> None:
-            failure_note(order).unlink(missing_ok=True)
-            display.begin(order.sequence_id)
-            try:
-                attempt(order, display.listen, threads=threads, device=device, running=processes.add)
-            finally:
-                display.leave(order.sequence_id)
-
-        try:
-            for outcome in run_farm(pool, make, worklist.open, in_flight=jobs, retry=_may_help):
-                if outcome.error is None:
-                    display.made(outcome.task.sequence_id)
-                elif outcome.final:
-                    failures[outcome.task.sequence_id] = str(outcome.error)
-                    write_json(failure_note(outcome.task), {"error": str(outcome.error)})
-                    display.failed(outcome.task.sequence_id)
-        except BaseException:
-            processes.stop()
-            raise
+    run = run_name()
+    with _crew(means, len(orders), layout) as (crew, limits), _work(crew, replace(limits, run=run)) as work:
+        record = RunRecord(run, _described(crew, means), time.time(), time.time())
+        lengths = {order.sequence_id: order.frames for order in orders}
+        with Monitor(layout, record, lengths, len(worklist.orders) - len(orders), quiet=quiet) as monitor:
+            farm = run_farm(
+                crew.executor, work, orders,
+                in_flight=min(crew.in_flight, len(orders)), attempts=means.attempts, retry=_may_help,
+                pause=means.pause_s,
+            )  # fmt: skip
+            for outcome in farm:
+                name, error = outcome.task.sequence_id, outcome.error
+                if error is None:
+                    monitor.made(name, here=bool(outcome.result))
+                elif isinstance(error, PostponedError) and not outcome.final:
+                    monitor.postponed(str(error))
+                else:
+                    monitor.failed(name, final=outcome.final)
+                if error is not None and outcome.final:
+                    failures[name] = _one_line(name, error)
+                    _note_failure(outcome.task, failures[name])
     return failures
 
 
+@contextlib.contextmanager
+def _crew(means: Means, orders: int, layout: DatasetLayout) -> Iterator[tuple[Crew, Limits]]:
+    """Who does the work, and with what limits on each attempt."""
+    limits = means.limits
+    if means.cluster is None:
+        jobs = min(means.jobs or 1, orders)
+        threads = limits.threads or max(1, usable_cores() // jobs)
+        with local_crew(jobs) as crew:
+            yield crew, replace(limits, threads=threads)
+    elif means.cluster == "slurm":
+        config = read_slurm_config(means.cluster_config)
+        if means.jobs is not None:
+            config = config.model_copy(update={"workers": means.jobs})
+        threads = limits.threads or config.cores
+        with slurm_crew(config, layout.logs / "slurm") as crew:
+            yield crew, replace(limits, threads=threads)
+    elif "://" in means.cluster:
+        with dask_crew(means.cluster) as crew:
+            yield crew, limits
+    else:
+        raise RecipeError(
+            f"cluster {means.cluster!r} is neither slurm nor an address such as tcp://host:8786"
+        )
+
+
+@contextlib.contextmanager
+def _work(crew: Crew, limits: Limits) -> Iterator[Work]:
+    """What the crew does with an order. Left early, the children that run here end."""
+    if crew.picklable:
+        yield partial(attempt, limits=limits)
+        return
+    stop = threading.Event()
+    try:
+        yield partial(attempt, limits=limits, stop=stop)
+    except BaseException:
+        stop.set()
+        raise
+
+
+def _described(crew: Crew, means: Means) -> str:
+    return f"{crew.name}, part {means.shard}" if means.shard else crew.name
+
+
 def _may_help(error: BaseException) -> bool:
-    return isinstance(error, AttemptError) and error.again
+    """Whether an attempt may be made again: not where the input is at fault; yes where a worker was lost."""
+    return error.again if isinstance(error, AttemptError) else not isinstance(error, PostponedError)
+
+
+def _one_line(name: str, error: BaseException) -> str:
+    text = " ".join(str(error).split()) or type(error).__name__
+    return text if name in text else f"{name}: {text}"
+
+
+def _note_failure(order: SequenceOrder, error: str) -> None:
+    with contextlib.suppress(OSError):  # a full disk must not end the run
+        failure_note(order).parent.mkdir(parents=True, exist_ok=True)
+        write_json(failure_note(order), {"error": error})
 
 
 def _facts(recipe: Recipe) -> dict[str, Any]:
@@ -167,23 +187,3 @@ def _facts(recipe: Recipe) -> dict[str, Any]:
         "recipe": recipe.save_as_dict(),
         "body_model": {"name": body.name, "sha256": body.sha256},
     }
-
-
-def _check_recipe(layout: DatasetLayout, recipe: Recipe) -> None:
-    """Refuse to mix two recipes in one dataset."""
-    kept = layout.root / "recipe.json"
-    if not kept.exists():
-        if layout.root.exists() and any(layout.root.iterdir()):
-            raise DatasetError(f"{layout.root}: holds other files and no dataset; choose an empty --out")
-        return
-    before, now = read_json(kept), recipe.save_as_dict()
-    differing = [name for name in now if name not in MAY_DIFFER and before.get(name) != now[name]]
-    if differing:
-        changes = ", ".join(f"{name} {before.get(name)} is now {now[name]}" for name in differing)
-        raise DatasetError(f"{layout.root}: was begun with another recipe ({changes}); choose another --out")
-
-
-def _open_dataset(layout: DatasetLayout, recipe: Recipe) -> None:
-    layout.sequences.mkdir(parents=True, exist_ok=True)
-    layout.work.mkdir(exist_ok=True)
-    write_json(layout.root / "recipe.json", recipe.save_as_dict())

@@ -1,38 +1,36 @@
 """Making one sequence: read, stage, plan, render, label, finish. Complete in the dataset, or absent."""
 
-import fcntl
 import shutil
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from camera_rigs import Finding, Plan, PlanError
-from render_jobs import RenderJob, quality_preset, run_job
+from render_jobs import JobResult, RenderJob, missing_frames, quality_preset, run_job
 from render_jobs.profile import STARTING, Profile, since_start
 from whacamole.body import BodyModel
 from whacamole.dataset import DatasetLayout, Sequence, SequenceLayout, write_summary
-from whacamole.errors import DatasetError, TakeError
+from whacamole.errors import TakeError
 from whacamole.labels.camera import Film
 from whacamole.motion import read_motion
 from whacamole.production.filming import camera_neighbours, film_of, plan_camera
 from whacamole.production.labelling import write_labels
 from whacamole.production.overlap import beside
+from whacamole.production.place import make_in_place
 from whacamole.production.preview import write_preview
 from whacamole.production.profiling import SequenceProfile
+from whacamole.production.worker import Say
 from whacamole.production.worklist import SequenceOrder, motion_checksum
 from whacamole.recipe import Recipe
 from whacamole.take import Take, stage_take
 
-__all__ = ["Say", "body_of", "make_sequence", "take_of"]
+__all__ = ["body_of", "make_sequence", "take_of"]
 
 SUBDIVISION = {"draft": 0, "standard": 0, "high": 1}
 """Levels for skin and clothes: the mesh is fine enough for all but close-ups."""
-
-Say = Callable[..., None]
-"""Called as ``say(event, **facts)`` while the work goes on."""
 
 
 def body_of(recipe: Recipe) -> BodyModel:
@@ -44,33 +42,45 @@ def body_of(recipe: Recipe) -> BodyModel:
     return BodyModel.embedded() if recipe.body_model is None else BodyModel.load(recipe.body_model)
 
 
-def make_sequence(order: SequenceOrder, say: Say, *, threads: int, device: str) -> None:
+def make_sequence(
+    order: SequenceOrder, say: Say, *, threads: int, device: str, silence_s: float, memory_mb: float | None
+) -> None:
     """Make one sequence and move it into the dataset; do nothing where it is there already.
 
     Whatever an earlier attempt left behind is used where it belongs to the same work (finished frames), and
     made again where it does not.
 
+    Args:
+        threads: processor threads of the renderer; 0 takes all cores.
+        device: "auto", "cpu" or "gpu".
+        silence_s: seconds without a finished frame after which the renderer counts as hung.
+        memory_mb: what the renderer may hold; None is no limit.
+
     Raises:
         MotionError, TakeError: the motion cannot be used.
         PlanError: no shot applies.
         RenderJobError: the frames cannot be rendered.
-        DatasetError: another process is making this very sequence.
+        PostponedError: another process is making this very sequence.
     """
-    layout = DatasetLayout(order.root)
     profile = Profile()
     profile.add(STARTING, since_start())
-    final = layout.sequence(order.sequence_id)
-    work = layout.work_of(order.sequence_id)
-    work.mkdir(parents=True, exist_ok=True)
-    with _only_one(work, order.sequence_id):
-        if final.summary.exists():
-            return
-        unfinished = SequenceLayout(work / "sequence")
-        frames = _make_in(order, unfinished, work, say, profile, threads=threads, device=device)
-        final.folder.parent.mkdir(exist_ok=True)
-        unfinished.folder.rename(final.folder)
-    shutil.rmtree(work, ignore_errors=True)
-    SequenceProfile.of(frames, since_start(), profile.seconds).save(layout, order.sequence_id)
+    rendered = 0
+    run = partial(
+        run_job,
+        engine=order.recipe.engine,
+        threads=threads,
+        device=device,
+        timeout=silence_s,
+        memory_limit_mb=memory_mb,
+    )
+
+    def fill(sequence: SequenceLayout, work: Path) -> None:
+        nonlocal rendered
+        rendered = _make_in(order, sequence, work, say, profile, run)
+
+    if make_in_place(order.root, order.sequence_id, fill):
+        layout = DatasetLayout(order.root)
+        SequenceProfile.of(rendered, since_start(), profile.seconds).save(layout, order.sequence_id)
 
 
 def _make_in(
@@ -79,11 +89,13 @@ def _make_in(
     work: Path,
     say: Say,
     profile: Profile,
-    *,
-    threads: int,
-    device: str,
+    run: Callable[..., JobResult],
 ) -> int:
-    """Make all files of the sequence in the folder ``sequence``; return how many frames were rendered."""
+    """Make all files of the sequence in the folder ``sequence``; return how many frames were rendered.
+
+    Args:
+        run: renders the job in the folder it is given.
+    """
     recipe = order.recipe
     say("step", name="scene")
     with profile.phase("take"):
@@ -101,10 +113,11 @@ def _make_in(
         job.save(folder)
         shutil.rmtree(sequence.folder, ignore_errors=True)
         sequence.folder.mkdir(parents=True)
-    say("step", name="render", frames=take.num_frames)
+    there = take.num_frames - len(missing_frames(folder))
+    say("step", name="render", frames=take.num_frames, done=there)
 
     def render(on_frame: Callable[[int], None]) -> int:
-        result = run_job(folder, engine=recipe.engine, threads=threads, device=device, on_frame=on_frame)
+        result = run(folder, on_frame=on_frame)
         profile.merge(result.profile)
         return result.frames
 
@@ -211,14 +224,3 @@ def _facts(
         "body_model": body.name,
         "mean_visible_fraction": round(float(visible.mean()), 6) if visible.size else 0.0,
     }
-
-
-@contextmanager
-def _only_one(work: Path, sequence_id: str) -> Iterator[None]:
-    """Hold the sequence's lock, which the system lets go of when the process ends, however it ends."""
-    with (work / "lock").open("w") as lock:
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            raise DatasetError(f"{sequence_id}: another process is making it; wait for it") from None
-        yield

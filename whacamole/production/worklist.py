@@ -1,7 +1,7 @@
 """What there is to make: one order a sequence, each independent of all the others."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Self
 
@@ -13,6 +13,10 @@ from whacamole.recipe import Recipe
 from whacamole.seeds import generator, stable_hash
 
 __all__ = ["SequenceOrder", "Worklist", "companions_of", "failure_note", "motion_checksum", "work_of"]
+
+
+UNKNOWN_FRAMES = 240
+"""Taken for the length of a motion whose header does not tell it."""
 
 
 @dataclass(frozen=True)
@@ -34,6 +38,15 @@ class SequenceOrder:
     root: Path
     recipe: Recipe
     companions: tuple[MotionFile, ...] = ()
+
+    @property
+    def frames(self) -> int:
+        """How many frames it will have, as far as the header of the motion tells."""
+        whole, asked = self.motion.num_frames, self.recipe.frames
+        if whole is None:
+            return asked or UNKNOWN_FRAMES
+        filmed = max(1, int((whole - 1) * self.recipe.fps / FPS) - 1)
+        return min(filmed, asked or filmed)
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain values for JSON."""
@@ -71,6 +84,13 @@ class Worklist:
     def open(self) -> tuple[SequenceOrder, ...]:
         """The orders still to be made."""
         return tuple(order for order in self.orders if order.sequence_id not in self.finished)
+
+    def part(self, index: int, count: int) -> Self:
+        """Return every ``count``-th order from the ``index``-th on (from 1); all parts together are all.
+
+        An order's part does not depend on what is finished.
+        """
+        return replace(self, orders=self.orders[index - 1 :: count])
 
 
 def work_of(recipe: Recipe, root: Path) -> Worklist:
