@@ -10,10 +10,15 @@ from rich.table import Table
 
 from whacamole.dataset import DatasetLayout, read_summary
 from whacamole.production.profiling import profile_as_dict, profile_table, read_profiles
+from whacamole.production.space import readable_bytes, sequence_bytes
 from whacamole.production.worklist import Worklist
 from whacamole.viewing.places import Places
 
 __all__ = ["Production"]
+
+
+MOST_ROWS = 60
+"""A table with more sequences is for `whacamole stats`, not for the end of a run."""
 
 
 @dataclass(frozen=True)
@@ -87,9 +92,12 @@ class Production:
         if self.dry_run:
             console.print(self._plan_table())
             to_make = len(self.worklist.open)
-            console.print(f"{to_make} to make, {len(self.worklist.orders) - to_make} finished")
+            size = readable_bytes(sum(sequence_bytes(order) for order in self.worklist.open))
+            kept = len(self.worklist.orders) - to_make
+            console.print(f"{to_make} to make (about {size} on disk), {kept} finished")
             return
-        console.print(self._made_table())
+        if len(self.worklist.orders) <= MOST_ROWS:
+            console.print(self._made_table())
         finished = [order for order in self.worklist.orders if order.sequence_id in self.worklist.finished]
         made = len(finished) - self.kept
         console.print(

@@ -27,6 +27,7 @@ from whacamole.production.opening import index_lock, open_dataset_for, settle_en
 from whacamole.production.progress import Monitor
 from whacamole.production.pulse import RunRecord, run_name
 from whacamole.production.report import Production
+from whacamole.production.space import check_disk
 from whacamole.production.worklist import SequenceOrder, Worklist, failure_note, work_of
 from whacamole.recipe import Recipe
 from whacamole.viewing.page import write_page
@@ -57,6 +58,8 @@ def produce(
     worklist = _worklist(recipe, layout, means)
     if dry_run:
         return Production(layout.root, worklist, {}, 0.0, {}, dry_run=True)
+    if means.check_disk:
+        check_disk(worklist.open, means.jobs or 1, layout.root)
     settled = settle_engine(recipe, layout, quiet)
     facts_of_dataset = _facts(settled)
     try:

@@ -48,6 +48,11 @@ class SequenceOrder:
         filmed = max(1, int((whole - 1) * self.recipe.fps / FPS) - 1)
         return min(filmed, asked or filmed)
 
+    @property
+    def people(self) -> int:
+        """How many people it will have."""
+        return self.motion.num_people + len(self.companions)
+
     def as_dict(self) -> dict[str, Any]:
         """Return plain values for JSON."""
         return {
@@ -142,12 +147,18 @@ def companions_of(
 
 
 def _file_as_dict(file: MotionFile) -> dict[str, Any]:
-    return {"id": file.id, "paths": [str(path) for path in file.paths], "source": file.source}
+    return {
+        "id": file.id, "paths": [str(path) for path in file.paths], "source": file.source,
+        "num_frames": file.num_frames, "num_people": file.num_people,
+    }  # fmt: skip
 
 
 def _file_from_dict(value: dict[str, Any]) -> MotionFile:
     paths = tuple(Path(path) for path in value["paths"])
-    return MotionFile(id=value["id"], paths=paths, source=value["source"])
+    return MotionFile(
+        id=value["id"], paths=paths, source=value["source"],
+        num_frames=value["num_frames"], num_people=value["num_people"],
+    )  # fmt: skip
 
 
 def failure_note(order: SequenceOrder) -> Path:
