@@ -21,7 +21,7 @@ from PIL import Image
 from render_jobs.images import picture_writer
 from render_jobs.processes import child_environment
 from whacamole.dataset import open_dataset
-from whacamole.production.filming import plan_camera
+from whacamole.production.filming import film_of, plan_camera
 from whacamole.production.sequence import render_job, take_of
 from whacamole.production.worklist import work_of
 from whacamole.recipe import Recipe
@@ -116,7 +116,8 @@ def _meanwhile(options: argparse.Namespace) -> None:
         shutil.rmtree(work, ignore_errors=True)
         order = work_of(Recipe(frames=frames, limit=1, stages=("park",), seed=3), work / "none").orders[0]
         take = take_of(order, textures=work / "textures")
-        render_job(take, plan_camera(take, order.recipe, 0), order).save(work / "job")
+        plan = plan_camera(take, order.recipe, 0)
+        render_job(take, plan, film_of(take, plan, order.recipe, 0), order.recipe).save(work / "job")
         print(f"meanwhile, {take.num_frames} frames, 1 person: {_bytes(work) / 1e6:.1f} MB")
 
 
