@@ -35,7 +35,6 @@ LABELS = ("camera", "people", "contact", "shot")
 
 def make(order: SequenceOrder, say: Say, **_: Any) -> None:
     """Make a sequence, or meet a fault."""
-    filled = []
 
     def fill(sequence: SequenceLayout, work: Path) -> None:
         frames = work / "job" / "out" / "rgb"
@@ -54,11 +53,11 @@ def make(order: SequenceOrder, say: Say, **_: Any) -> None:
         _label(order, template, sequence)
         frames.rename(sequence.folder / "rgb")
         write_summary(sequence, _facts(order, template))
-        filled.append(order.sequence_id)
 
-    make_in_place(order.root, order.sequence_id, fill)
+    if not make_in_place(order.root, order.sequence_id, fill):
+        return
     with (HOME / "made.log").open("a", encoding="utf-8") as log:
-        log.writelines(f"{name}\n" for name in filled)
+        log.write(f"{order.sequence_id}\n")
 
 
 def _label(order: SequenceOrder, template: SequenceLayout, sequence: SequenceLayout) -> None:
