@@ -20,6 +20,10 @@ import psutil
 
 MEGABYTE = 1024**2
 
+CORES_A_JOB = 2
+JOB_MEMORY_MB = 3000.0
+"""Both processes of a job, with room for a crowd at high resolution."""
+
 _GPU_LISTS = ("CUDA_VISIBLE_DEVICES", "HIP_VISIBLE_DEVICES", "ROCR_VISIBLE_DEVICES")
 _MOST_A_GPU = 64
 
@@ -67,6 +71,18 @@ def visible_gpus() -> tuple[str, ...]:
     except (OSError, subprocess.SubprocessError):
         return ()
     return tuple(line.strip() for line in asked.stdout.splitlines() if line.strip().isdigit())
+
+
+def best_jobs(cores: int, memory_mb: float, gpus: int) -> int:
+    """How many jobs a machine does side by side for most throughput.
+
+    One for each graphics processor. Without any, one for every :data:`CORES_A_JOB` cores: what a job does on
+    one core alone (staging, labels, the ends of frames) then fills the gaps of the others
+    (``benchmarks/cluster.py split``), as far as memory goes.
+    """
+    if gpus:
+        return gpus
+    return max(1, min(cores // CORES_A_JOB, int(memory_mb // JOB_MEMORY_MB)))
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from typing import Any
 from render_jobs.clusters import Crew, dask_crew, local_crew, read_slurm_config, slurm_crew
 from render_jobs.errors import PostponedError
 from render_jobs.farm import run_farm
-from render_jobs.machine import usable_cores
+from render_jobs.machine import best_jobs, usable_cores, usable_memory_mb, visible_gpus
 from whacamole import __version__
 from whacamole.dataset import DatasetLayout, open_dataset, write_index
 from whacamole.dataset.card import write_card
@@ -124,7 +124,8 @@ def _crew(means: Means, orders: int, layout: DatasetLayout) -> Iterator[tuple[Cr
     """Who does the work, and with what limits on each attempt."""
     limits = means.limits
     if means.cluster is None:
-        jobs = min(means.jobs or 1, orders)
+        gpus = () if limits.device == "cpu" else visible_gpus()
+        jobs = min(means.jobs or best_jobs(usable_cores(), usable_memory_mb(), len(gpus)), orders)
         threads = limits.threads or max(1, usable_cores() // jobs)
         with local_crew(jobs) as crew:
             yield crew, replace(limits, threads=threads)
