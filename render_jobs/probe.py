@@ -17,28 +17,13 @@ from typing import Any
 
 from render_jobs.errors import EngineError, RenderJobError
 from render_jobs.processes import child_environment, die_with_parent
-from render_jobs.protocol import ENGINES
-from render_jobs.system_libraries import BLENDER_LIBRARIES, OPENGL_LIBRARIES, install_line
+from render_jobs.protocol import BY_ITSELF, ENGINES
+from render_jobs.remedies import known_failure, non_empty_lines
 
 PROBE_TIMEOUT_S = 120.0
 
-FOR_BLENDER = install_line(BLENDER_LIBRARIES)
-FOR_OPENGL = install_line(OPENGL_LIBRARIES)
-FOR_DRIVER = "install the package of the GPU's driver, or of Mesa's (in Debian: libgl1-mesa-dri)"
-
-REMEDIES: tuple[tuple[str, str], ...] = (
-    (r"No module named '?(bpy|pyrender|OpenGL)", "pip install --constraint constraints.txt whacamole"),
-    (r"numpy\.core\.multiarray failed|np\.infty", 'pip install "numpy>=1.26,<2"'),
-    (r"lib(X\w+|xkb\w+|SM|ICE|GL)\.so[.\d]*: cannot open", FOR_BLENDER),
-    (r"XRenderFindVisualFormat", "set PYGLET_HEADLESS=1, or " + install_line(["libXrender.so.1"])),
-    (r"Unable to load EGL|Couldn't open libEGL|EGL: cannot open", FOR_OPENGL),
-    (r"Unable to load OpenGL|glGetError", FOR_OPENGL),
-    (r"EGL Error \(0x3001\)|err = 12289|eglInitialize", FOR_DRIVER),
-    (r'Library "GLU" not found', 'pip install "pyglet>=2"'),
-    (r"OSMesaCreateContextAttribs", "pip install --no-deps PyOpenGL==3.1.10"),
-    (r"NoSuchDisplay|NullFunctionError", "set PYOPENGL_PLATFORM=egl and PYGLET_HEADLESS=1"),
-)
-"""What a failure says, and what to do about it; the first that matches counts."""
+SOFTWARE = re.compile("llvmpipe|softpipe|swrast|Software", re.IGNORECASE)
+"""In the names of drivers that draw on the processor."""
 
 UNKNOWN_REMEDY = "run `python -m render_jobs.probe {name}` to see all that it prints"
 
@@ -87,11 +72,10 @@ def explain_failure(name: str, output: str, status: int) -> Probe:
         output: everything it printed.
         status: its exit status, negative for a signal.
     """
-    lines = [line.strip() for line in output.splitlines() if line.strip()]
-    for pattern, remedy in REMEDIES:
-        for line in lines:
-            if re.search(pattern, line):
-                return Probe(name, False, line, remedy)
+    known = known_failure(output)
+    if known is not None:
+        return Probe(name, False, *known)
+    lines = non_empty_lines(output)
     last = lines[-1] if lines else f"ended with status {status}"
     return Probe(name, False, last, UNKNOWN_REMEDY.format(name=name))
 
@@ -116,7 +100,7 @@ def choose_engine(wanted: str = "auto") -> tuple[str, str]:
     if wanted not in ("auto", *ENGINES):
         raise RenderJobError(f"engine {wanted!r} is not one of auto, {', '.join(ENGINES)}")
     failures: list[str] = []
-    for name in ENGINES if wanted == "auto" else (wanted,):
+    for name in BY_ITSELF if wanted == "auto" else (wanted,):
         found = probe(name)
         if found.works:
             note = f"Rendering with the {name} engine, as {failures[0]}" if failures else ""
@@ -133,8 +117,8 @@ def _try_cycles() -> str:
     return f"Blender {bpy.app.version_string}, on " + (", ".join(gpus) or "the CPU alone")
 
 
-def _try_workbench() -> str:
-    """Render a 16×16 image with the engine that needs OpenGL and nothing else; EEVEE needs the same."""
+def _try_eevee() -> str:
+    """Render a 16×16 image with Workbench, which opens OpenGL as EEVEE does but has no shaders to compile."""
     bpy: Any = importlib.import_module("bpy")
     bpy.ops.wm.read_factory_settings(use_empty=False)
     scene = bpy.context.scene
@@ -142,7 +126,9 @@ def _try_workbench() -> str:
     scene.render.resolution_x = scene.render.resolution_y = 16
     bpy.ops.render.render()
     gpu: Any = importlib.import_module("gpu")
-    return f"Blender's OpenGL engines, on {gpu.platform.renderer_get()}"
+    renderer = str(gpu.platform.renderer_get())
+    slow = " (no graphics card: Cycles is quicker)" if SOFTWARE.search(renderer) else ""
+    return f"EEVEE, on {renderer}{slow}"
 
 
 def _try_raster() -> str:
@@ -151,8 +137,8 @@ def _try_raster() -> str:
 
 TRIES: dict[str, Callable[[], str]] = {
     "cycles": _try_cycles,
-    "workbench": _try_workbench,
     "raster": _try_raster,
+    "eevee": _try_eevee,
 }
 """What can be tried: each returns what it found, or raises, or takes the process with it."""
 

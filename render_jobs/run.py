@@ -16,6 +16,7 @@ from render_jobs.errors import EngineError, RenderJobError, WorkerError
 from render_jobs.images import PARTIAL_FOLDER, is_complete
 from render_jobs.profile import Profile
 from render_jobs.protocol import BAD_JOB, ENGINES, LOG_FILE, NO_ENGINE
+from render_jobs.remedies import known_failure
 from render_jobs.storage import OUTPUT_FOLDER, JobRecord, read_record
 from render_jobs.watch import ChildEnd, describe_end, watch_child
 
@@ -62,7 +63,7 @@ def run_job(
 
     Args:
         folder: the job folder; no other process may be rendering it.
-        engine: ``cycles`` or ``raster``.
+        engine: ``cycles``, ``raster`` or ``eevee``.
         device: ``auto``, ``cpu``, ``gpu`` or an interface as ``cuda:0``.
         threads: CPU threads of the child; 0 takes all cores.
         timeout: seconds without a finished frame after which the child counts as hung and is killed; None
@@ -91,11 +92,12 @@ def run_job(
     peak = 0.0
     for frames in _blocks(record, folder / OUTPUT_FOLDER, block):
         command = _command(folder, engine, device, threads, frames)
+        log_start = log.stat().st_size if log.exists() else 0
         try:
             end = watch_child(command, log, progress.hear, timeout=timeout, memory_limit_mb=memory_limit_mb)
         finally:
             _clear_remains(folder)
-        _judge(end, progress.error, log)
+        _judge(end, progress.error, log, log_start)
         peak = max(peak, end.peak_memory_mb)
     return JobResult(
         frames=len(progress.frame_seconds),
@@ -178,12 +180,23 @@ class _Progress:
                 self.error = event["message"]
 
 
-def _judge(end: ChildEnd, error: str, log: Path) -> None:
-    """Raise what the end of a worker means, or return if all is well."""
+def _judge(end: ChildEnd, error: str, log: Path, log_start: int) -> None:
+    """Raise what the end of a worker means, or return if all is well.
+
+    Args:
+        error: what it said itself, if anything.
+        log_start: where in the log its own output begins.
+    """
     if end.status == 0:
         return
     if end.status == NO_ENGINE:
         raise EngineError(error)
     if end.status == BAD_JOB and error:
         raise RenderJobError(error)
+    if end.status < 0:  # Blender's OpenGL engines end the process where a library or a driver is missing
+        with log.open("rb") as stream:
+            stream.seek(log_start)
+            known = known_failure(stream.read().decode(errors="replace"))
+        if known is not None:
+            raise EngineError(f"the engine cannot run here ({known[0]}): {known[1]} (log: {log})")
     raise WorkerError(f"{error or describe_end(end)} (log: {log})", log)

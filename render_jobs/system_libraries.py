@@ -23,6 +23,7 @@ PACKAGES: Mapping[str, str] = MappingProxyType(
         "libGL.so.1": "libgl1",
         "libICE.so.6": "libice6",
         "libSM.so.6": "libsm6",
+        "libOSMesa.so.8": "libosmesa6",
         "libX11.so.6": "libx11-6",
         "libXext.so.6": "libxext6",
         "libXfixes.so.3": "libxfixes3",
@@ -62,7 +63,7 @@ def missing_for_blender() -> list[str]:
     spec = importlib.util.find_spec("bpy")
     ldd = shutil.which("ldd")
     if spec is None or spec.origin is None or ldd is None:
-        return [name for name in BLENDER_LIBRARIES if not _opens(name)]
+        return [name for name in BLENDER_LIBRARIES if not opens(name)]
     listing = subprocess.run([ldd, spec.origin], capture_output=True, text=True, check=False).stdout
     return parse_not_found(listing)
 
@@ -78,10 +79,11 @@ def missing_for_opengl() -> list[str]:
     """Names of the shared objects that the OpenGL engines open and the system does not have."""
     if not sys.platform.startswith("linux"):
         return []
-    return [name for name in OPENGL_LIBRARIES if not _opens(name)]
+    return [name for name in OPENGL_LIBRARIES if not opens(name)]
 
 
-def _opens(name: str) -> bool:
+def opens(name: str) -> bool:
+    """Whether the dynamic linker finds a shared object of this name."""
     try:
         ctypes.CDLL(name)
     except OSError:

@@ -20,12 +20,13 @@ import threading
 import traceback
 from collections.abc import Sequence
 from pathlib import Path
-from typing import NoReturn, TextIO
+from typing import Any, NoReturn, TextIO
 
 from render_jobs.devices import parse_device
 from render_jobs.errors import EngineError, RenderJobError
 from render_jobs.images import is_complete
 from render_jobs.job import RenderJob
+from render_jobs.probe import explain_failure
 from render_jobs.processes import be_first_to_go, die_with_parent
 from render_jobs.profile import IMPORTING, LOADING, STARTING, Profile, since_start
 from render_jobs.protocol import BAD_JOB, ENGINES, FAILED, LOG_FILE, NO_ENGINE
@@ -125,7 +126,7 @@ def _work(options: argparse.Namespace, reporter: Reporter, profile: Profile) -> 
     scratch.mkdir()
     try:
         with profile.phase(IMPORTING):
-            engine = importlib.import_module(ENGINES[options.engine])
+            engine = _load(options.engine)
         engine.render(
             job=job,
             frames=missing,
@@ -145,6 +146,19 @@ def _work(options: argparse.Namespace, reporter: Reporter, profile: Profile) -> 
     absent = [frame for frame in missing if not is_complete(out, frame, job.passes, job.image_format)]
     if absent:
         raise RuntimeError(f"the engine ended without frame {absent[0]} ({len(absent)} in all)")
+
+
+def _load(name: str) -> Any:
+    """The engine's module.
+
+    Raises:
+        EngineError: it does not load; the message holds the remedy.
+    """
+    try:
+        return importlib.import_module(ENGINES[name])
+    except Exception as error:  # a missing library can show as any of several
+        failure = explain_failure(name, "".join(traceback.format_exception(error)), FAILED)
+        raise EngineError(f"the engine {name} does not load ({failure.found}): {failure.remedy}") from error
 
 
 def _take_over_output(folder: Path) -> TextIO:

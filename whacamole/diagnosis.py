@@ -16,7 +16,7 @@ import psutil
 
 from render_jobs import system_libraries
 from render_jobs.probe import TRIES, Probe, probe
-from render_jobs.protocol import ENGINES
+from render_jobs.protocol import BY_ITSELF
 
 __all__ = ["Check", "can_render", "diagnose", "report_as_dict"]
 
@@ -160,8 +160,8 @@ def _engines() -> list[Check]:
     """
     with ThreadPoolExecutor(len(TRIES)) as pool:
         outcomes = list(pool.map(probe, TRIES))
-    can_render = any(outcome.works for outcome in outcomes if outcome.name in ENGINES)
-    return [_engine(outcome, needed=outcome.name in ENGINES and not can_render) for outcome in outcomes]
+    can_render = any(outcome.works for outcome in outcomes if outcome.name in BY_ITSELF)
+    return [_engine(outcome, needed=outcome.name in BY_ITSELF and not can_render) for outcome in outcomes]
 
 
 def _engine(outcome: Probe, *, needed: bool) -> Check:

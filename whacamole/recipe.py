@@ -127,8 +127,9 @@ class Recipe(BaseModel):
         (0.0, 0.0), description="sensor noise at middle grey in 8-bit levels, drawn between two numbers"
     )
     quality: Literal["draft", "standard", "high"] = Field("standard", description="render settings")
-    engine: Literal["auto", "cycles", "raster"] = Field(
-        "auto", description="renderer; auto: Cycles where Blender runs, else the OpenGL raster engine"
+    engine: Literal["auto", "cycles", "raster", "eevee"] = Field(
+        "auto",
+        description="renderer; auto: Cycles where Blender runs, else the OpenGL raster engine",
     )
     passes: Names = Field(("rgb", "mask", "depth"), description="what is rendered for each frame")
     image_format: Literal["jpg", "png"] = Field("jpg", description="file format of the colour frames")

@@ -73,7 +73,9 @@ def stills(blend: Path, settings: Path, out: Path) -> None:
             "seconds": time.perf_counter() - began,
             "cpu_seconds": time.process_time() - cpu_began,
         }
-        (out / "measured.json").write_text(json.dumps(measured), encoding="utf-8")
+        beside = out / "measured.part"
+        beside.write_text(json.dumps(measured), encoding="utf-8")
+        beside.replace(out / "measured.json")
 
 
 def _apply(scene: Any, values: dict[str, Any]) -> None:

@@ -90,14 +90,17 @@ SETTINGS: dict[str, dict[str, Cycles]] = {
         "XRFeitoria: 128": {"samples": 128},
         "Kubric: 64": {"samples": 64},
         "Kubric: 128": {"samples": 128},
+    },
+    "default": {
+        f"Blender's default, {samples} samples": {"samples": samples}
+        for samples in (4, 8, 16, 32, 64, 128, 256)
+    },
+    "long": {
         "BlenderProc: 1024, bounces 3/0": {
             "samples": 1024, "max_bounces": 3, "diffuse_bounces": 3, "glossy_bounces": 0,
             "transmission_bounces": 0, "use_light_tree": False, "debug_use_spatial_splits": True,
         },
-    },
-    "default": {
-        f"Blender's default, {samples} samples": {"samples": samples}
-        for samples in (4, 8, 16, 32, 64, 128, 256, 4096)
+        "Blender's default as it is": {},
     },
 }  # fmt: skip
 """By group: what is set over :data:`BLENDER_DEFAULT`."""
@@ -138,7 +141,7 @@ def _parse() -> argparse.Namespace:
         "--settings", nargs="*", choices=SETTINGS, default=["presets"], help="what to measure"
     )
     parser.add_argument("--scenes", nargs="+", choices=SCENES, default=list(SCENES))
-    parser.add_argument("--size", default="256x144", help="WIDTHxHEIGHT of the image")
+    parser.add_argument("--size", default="160x90", help="WIDTHxHEIGHT of the image")
     parser.add_argument("--out", type=Path, default=WORK / "quality")
     return parser.parse_args()
 
@@ -159,15 +162,20 @@ def measure(stage: str, wanted: dict[str, Cycles], options: argparse.Namespace) 
     for name in wanted:
         squares = float(np.mean((_picture(folder, name) - reference) ** 2))
         error = max(squares - noise, 0.0) ** 0.5
-        found[name] = Measurement(error, took[name]["cpu_seconds"], took[name]["seconds"])
+        found[name] = Measurement(
+            error, took[_file_name(name)]["cpu_seconds"], took[_file_name(name)]["seconds"]
+        )
     return found
 
 
 def _render(blend: Path, wanted: dict[str, Cycles], folder: Path) -> dict[str, dict[str, float]]:
     """Render what is wanted and not there yet, in one Blender; return what each took."""
-    kept = folder / "kept.json"
-    took: dict[str, dict[str, float]] = json.loads(kept.read_text()) if kept.exists() else {}
-    missing = {name: values for name, values in wanted.items() if name not in took}
+    kept, measured = folder / "kept.json", folder / "measured.json"
+    took: dict[str, dict[str, float]] = {}
+    for file in (kept, measured):  # the second is what an interrupted run left
+        took |= json.loads(file.read_text()) if file.exists() else {}
+    kept.write_text(json.dumps(took, indent=1), encoding="utf-8")
+    missing = {name: values for name, values in wanted.items() if _file_name(name) not in took}
     if missing:
         spec = folder / "settings.json"
         entries = [
@@ -175,14 +183,10 @@ def _render(blend: Path, wanted: dict[str, Cycles], folder: Path) -> dict[str, d
             for name, values in missing.items()
         ]
         spec.write_text(json.dumps(entries), encoding="utf-8")
-        measured = folder / "measured.json"
         measured.unlink(missing_ok=True)
-        try:
-            blender("stills", blend, spec, folder, log=folder / "blender.log")
-        finally:
-            done = json.loads(measured.read_text()) if measured.exists() else {}
-            took |= {name: done[_file_name(name)] for name in missing if _file_name(name) in done}
-            kept.write_text(json.dumps(took, indent=1), encoding="utf-8")
+        blender("stills", blend, spec, folder, log=folder / "blender.log")
+        took |= json.loads(measured.read_text())
+        kept.write_text(json.dumps(took, indent=1), encoding="utf-8")
     return took
 
 

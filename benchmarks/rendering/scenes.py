@@ -7,13 +7,12 @@ import subprocess
 import sys
 from pathlib import Path
 
-from render_jobs import Quality, RenderJob, quality_preset
+from render_jobs import RenderJob
 from render_jobs.processes import child_environment
-from whacamole.body import BodyModel
-from whacamole.motion import embedded_motions, find_motions, read_motion
-from whacamole.production.filming import camera_neighbours, plan_camera
+from whacamole.production.filming import film_of, plan_camera
+from whacamole.production.sequence import render_job, take_of
+from whacamole.production.worklist import SequenceOrder, work_of
 from whacamole.recipe import Recipe
-from whacamole.take import stage_take
 
 SCENES = {"courtyard": "walk", "living-room": "dance_a", "night-street": "duet"}
 """Stage and motion: daylight from an environment map, lamps in a room, and two people under street lamps."""
@@ -21,33 +20,35 @@ SCENES = {"courtyard": "walk", "living-room": "dance_a", "night-street": "duet"}
 WORK = Path("build/benchmarks/rendering")
 
 
+def order_of(motion: str, recipe: Recipe) -> SequenceOrder:
+    """The first sequence of an embedded motion."""
+    orders = work_of(recipe, WORK / "none").orders
+    return next(order for order in orders if order.motion.id == motion)
+
+
+def job_of(order: SequenceOrder, textures: Path) -> RenderJob:
+    """The very job that ``whacamole render`` renders for the order."""
+    take = take_of(order, textures=textures)
+    plan = plan_camera(take, order.recipe, order.shot_index)
+    film = film_of(take, plan, order.recipe, order.shot_index)
+    return render_job(take, plan, film, order.recipe)
+
+
 def make_job(
-    stage: str, size: tuple[int, int], frames: int, *, quality: Quality | None = None, out: Path = WORK
+    stage: str, size: tuple[int, int], frames: int, *, out: Path, quality: str = "standard"
 ) -> RenderJob:
-    """Dressed people on a stage, filmed as ``whacamole render`` would film them."""
-    (file,) = (file for file in find_motions(embedded_motions()) if file.id == SCENES[stage])
-    take = stage_take(
-        read_motion(file), BodyModel.embedded(), frames=frames, seed=3, shot_index=0,
-        textures=out / "textures" / stage, stages=(stage,),
-    )  # fmt: skip
-    plan = plan_camera(take, Recipe(size=size, frames=frames), 0)
-    people = tuple(mesh for performer in take.performers for mesh in performer.meshes)
-    return RenderJob(
-        camera=plan.path,
-        camera_neighbours=camera_neighbours(plan.path),
-        meshes=take.stage.meshes + people,
-        lights=take.stage.lights,
-        environment=take.stage.environment,
-        exposure=take.stage.exposure,
-        quality=quality or quality_preset("standard"),
+    """Dressed people on a stage of :data:`SCENES`, filmed as ``whacamole render`` films them."""
+    recipe = Recipe.model_validate(
+        {"size": size, "frames": frames, "stages": (stage,), "seed": 3, "quality": quality}
     )
+    return job_of(order_of(SCENES[stage], recipe), out / "textures" / stage)
 
 
 def blender(*words: str | Path, log: Path) -> None:
     """Run :mod:`benchmarks.rendering.blender` in a child."""
-    root = Path(__file__).resolve().parents[2]
     environment = child_environment()
-    environment["PYTHONPATH"] = os.pathsep.join([str(root), environment["PYTHONPATH"]])
+    root = str(Path(__file__).resolve().parents[2])
+    environment["PYTHONPATH"] = os.pathsep.join([root, environment["PYTHONPATH"]])
     log.parent.mkdir(parents=True, exist_ok=True)
     with log.open("ab") as output:
         subprocess.run(

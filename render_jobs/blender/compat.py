@@ -16,6 +16,9 @@ SKY_TYPE = "MULTIPLE_SCATTERING" if IS_5 else "NISHITA"
 OBJECT_INDEX_CHANNEL = "Object Index.X" if IS_5 else "IndexOB.X"
 """The channel of the object index in a multilayer EXR, without the name of the view layer."""
 
+EEVEE = "BLENDER_EEVEE" if IS_5 else "BLENDER_EEVEE_NEXT"
+"""The name of the OpenGL engine."""
+
 LINEAR = 1
 """The enum value of linear interpolation of a key frame."""
 

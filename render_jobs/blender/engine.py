@@ -1,4 +1,4 @@
-"""The Cycles engine: builds the scene, and puts finished frames in place while the next one renders."""
+"""Blender's engines: build the scene, and put finished frames in place while the next one renders."""
 
 from __future__ import annotations
 
@@ -7,9 +7,10 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import NoReturn
 
+from render_jobs.blender.eevee_settings import set_up_eevee
 from render_jobs.blender.phases import DENOISER_VERBOSITY, LogFollower, Phases
 from render_jobs.blender.raw import read_labels
-from render_jobs.blender.render import LABEL_LAYER, RawFrame, build_scene, render_frames
+from render_jobs.blender.render import CYCLES, LABEL_LAYER, RawFrame, build_scene, render_frames
 from render_jobs.devices import DeviceChoice
 from render_jobs.encoding import Encoder, OnFrame
 from render_jobs.images import Writer, label_writer, picture_writer, read_picture
@@ -29,6 +30,7 @@ def render(
     on_frame: OnFrame,
     abort: Callable[[BaseException], NoReturn],
     profile: Profile,
+    painter: str = CYCLES,
 ) -> None:
     """Render frames of a job with Cycles.
 
@@ -43,6 +45,7 @@ def render(
         on_frame: told of each frame that is in its place.
         abort: ends the process; used where an exception would be lost.
         profile: where the time goes.
+        painter: Blender's name of the engine that makes the picture; the labels are Cycles' in any case.
 
     Raises:
         RenderJobError: a texture cannot be read.
@@ -52,6 +55,9 @@ def render(
     os.environ.setdefault(*DENOISER_VERBOSITY)
     with profile.phase(BUILDING):
         devices = build_scene(job, scratch, device, threads)
+        if painter != CYCLES:
+            set_up_eevee(job)
+            devices = f"EEVEE by OpenGL; labels by Cycles on {devices}"
     on_start(devices)
     with (
         Encoder(out, job.image_format, on_frame, abort, profile) as encoder,
@@ -64,6 +70,7 @@ def render(
             lambda raw: encoder.put(raw.frame, lambda: _writers(job, raw)),
             abort,
             profile,
+            painter,
         )
 
 

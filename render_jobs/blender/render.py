@@ -2,7 +2,8 @@
 
 Two view layers are rendered in one go: ``beauty`` makes the picture; ``labels`` takes one sample at the
 centre of every pixel, so that mask, depth, normal and flow tell of one and the same surface, without
-antialiasing or blur. The second layer costs about as much as one more sample a pixel.
+antialiasing or blur. The second layer costs about as much as one more sample a pixel. It is Cycles' in any
+case; where another engine makes the picture, the two layers are rendered in turn, some frames at a time.
 
 Motion blur is switched off for the second layer. Depth of field is a property of the camera and not of a
 layer, so with it the two layers are rendered one after the other, some frames at a time.
@@ -27,13 +28,16 @@ from render_jobs.blender.materials import build_material
 from render_jobs.devices import DeviceChoice
 from render_jobs.job import RenderJob
 from render_jobs.passes import LABEL_PASSES
-from render_jobs.profile import WRITING, Profile
+from render_jobs.profile import DRAWING, WRITING, Profile
 
 BEAUTY_LAYER = "beauty"
 LABEL_LAYER = "labels"
+CYCLES = "CYCLES"
 VIEW_TRANSFORM = {"standard": ("Standard", "None"), "agx": ("AgX", "AgX - Medium High Contrast")}
 LENS_BLOCK = 8
 """Frames rendered as pictures, then as labels, where depth of field keeps the two apart."""
+EEVEE_BLOCK = 32
+"""The same where two engines share the work: changing over takes as long as setting up the scene."""
 
 ALPHA_SEEN = 0.5
 """A surface counts as seen, for the labels, from this opacity on."""
@@ -94,6 +98,7 @@ def render_frames(
     on_frame: Callable[[RawFrame], None],
     abort: Callable[[BaseException], NoReturn],
     profile: Profile,
+    painter: str = CYCLES,
 ) -> None:
     """Render frames of the built scene; consecutive ones in one animation render.
 
@@ -105,13 +110,15 @@ def render_frames(
         abort: called on an error between frames. Blender would print the exception and go on with the next
             frame, so this must end the process.
         profile: where the time of writing raw frames is counted.
+        painter: Blender's name of the engine that makes the picture.
     """
     scene: Any = bpy.context.scene
     wants_rgb = "rgb" in job.passes
     wants_labels = any(name in LABEL_PASSES for name in job.passes)
     scene.render.filepath = str(scratch / "raw_")
 
-    apart = job.f_number is not None and wants_rgb and wants_labels
+    apart = (job.f_number is not None or painter != CYCLES) and wants_rgb and wants_labels
+    block = None if not apart else LENS_BLOCK if painter == CYCLES else EEVEE_BLOCK
     layers = {BEAUTY_LAYER: wants_rgb, LABEL_LAYER: wants_labels}
 
     def picture_path(frame: int) -> Path:
@@ -121,6 +128,8 @@ def render_frames(
 
     def keep_picture(rendered: Any, *_: object) -> None:
         nonlocal rendered_at
+        if rendered.render.engine != CYCLES:  # which says itself where its time goes
+            profile.add(DRAWING, time.perf_counter() - rendered_at)
         rendered_at = time.perf_counter()
         try:
             if rendered.view_layers[BEAUTY_LAYER].use:
@@ -129,8 +138,10 @@ def render_frames(
             abort(error)
 
     def finish(rendered: Any, *_: object) -> None:
+        nonlocal rendered_at
         try:
             profile.add(WRITING, time.perf_counter() - rendered_at)
+            rendered_at = time.perf_counter()
             frame = rendered.frame_current
             raw = Path(rendered.render.frame_path(frame=frame))
             if not rendered.view_layers[LABEL_LAYER].use:
@@ -146,14 +157,16 @@ def render_frames(
     bpy.app.handlers.render_post.append(keep_picture)
     bpy.app.handlers.render_write.append(finish)
     try:
-        for start, stop in _runs(frames, LENS_BLOCK if apart else None):
+        for start, stop in _runs(frames, block):
             scene.frame_start, scene.frame_end = start, stop - 1
             for used in ([BEAUTY_LAYER], [LABEL_LAYER]) if apart else ([*layers],):
                 for name, wanted in layers.items():
                     scene.view_layers[name].use = wanted and name in used
+                scene.render.engine = painter if wants_rgb and BEAUTY_LAYER in used else CYCLES
                 scene.camera.data.dof.use_dof = (
                     job.f_number is not None and BEAUTY_LAYER in used and wants_rgb
                 )
+                rendered_at = time.perf_counter()
                 bpy.ops.render.render(animation=True)
     finally:
         bpy.app.handlers.render_post.remove(keep_picture)

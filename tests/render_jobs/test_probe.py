@@ -19,7 +19,7 @@ FAILURES = [
     ("OpenGL.error.GLError: GLError(err = 12289, baseOperation = eglInitialize,", "libgl1-mesa-dri"),
     ('pyglet.display.xlib.NoSuchDisplayException: Cannot connect to "None"', "PYOPENGL_PLATFORM=egl"),
     ("OpenGL.error.NullFunctionError: Attempt to call an undefined function glGenVertexArrays", "egl"),
-    ("ImportError: cannot import name 'OSMesaCreateContextAttribs' from 'OpenGL.osmesa'", "PyOpenGL==3.1.10"),
+    ("ImportError: cannot import name 'OSMesaCreateContextAttribs' from 'OpenGL.osmesa'", "libosmesa6"),
     ("Couldn't open libEGL.so.1: libEGL.so.1: cannot open shared object file", "libegl1"),
     ("Failed to create headless GPU context: EGL Error (0x3001): EGL_NOT_INITIALIZED", "libgl1-mesa-dri"),
     ("ImportError: numpy.core.multiarray failed to import", "numpy>=1.26,<2"),
@@ -86,5 +86,23 @@ def test_the_best_engine_that_works_is_taken_and_a_lesser_one_is_announced(
     _pretend(monkeypatch, cycles=False, raster=False)
     with pytest.raises(EngineError, match=r"cycles cannot run.*; raster cannot run"):
         choose_engine()
-    with pytest.raises(RenderJobError, match="'unreal' is not one of auto, cycles, raster"):
+    with pytest.raises(RenderJobError, match="'unreal' is not one of auto, cycles, raster, eevee"):
         choose_engine("unreal")
+
+
+def test_of_a_traceback_the_message_is_told_and_not_the_code() -> None:
+    output = (
+        'Traceback (most recent call last):\n  File "context.py", line 90, in __init__\n'
+        '    raise OSError("libOSMesa.so.8: cannot open")\n'
+        "OSError: libOSMesa.so.8: cannot open shared object file: No such file or directory\n"
+    )
+    found = explain_failure("raster", output, 1)
+    assert found.found.startswith("OSError: libOSMesa.so.8")
+    assert "libosmesa6" in found.remedy
+
+
+def test_eevee_is_never_chosen_by_itself(monkeypatch: pytest.MonkeyPatch) -> None:
+    _pretend(monkeypatch, cycles=False, raster=False, eevee=True)
+    with pytest.raises(EngineError, match="raster cannot run"):
+        choose_engine()
+    assert choose_engine("eevee") == ("eevee", "")

@@ -94,10 +94,10 @@ def test_missing_libraries_are_named_with_their_packages(
 @pytest.mark.parametrize(
     ("broken", "states"),
     [
-        ((), {"cycles": "ok", "raster": "ok", "workbench": "ok"}),
-        (("workbench",), {"cycles": "ok", "raster": "ok", "workbench": "warning"}),
-        (("cycles", "workbench"), {"cycles": "warning", "raster": "ok", "workbench": "warning"}),
-        (("cycles", "raster"), {"cycles": "error", "raster": "error", "workbench": "ok"}),
+        ((), {"cycles": "ok", "raster": "ok", "eevee": "ok"}),
+        (("eevee",), {"cycles": "ok", "raster": "ok", "eevee": "warning"}),
+        (("cycles", "eevee"), {"cycles": "warning", "raster": "ok", "eevee": "warning"}),
+        (("cycles", "raster"), {"cycles": "error", "raster": "error", "eevee": "ok"}),
     ],
 )
 def test_one_engine_that_can_render_is_enough(

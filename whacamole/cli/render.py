@@ -1,7 +1,7 @@
 """``whacamole render``: motions in, a labelled dataset out."""
 
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 import typer
 
@@ -43,7 +43,9 @@ def render(
     quality: Annotated[
         str | None, typer.Option(help="draft, standard or high.", show_default="standard")
     ] = None,
-    engine: Annotated[str | None, typer.Option(help="auto, cycles or raster.", show_default="auto")] = None,
+    engine: Annotated[
+        str | None, typer.Option(help="auto, cycles, raster or eevee.", show_default="auto")
+    ] = None,
     motion_blur: Annotated[
         str | None,
         typer.Option(
@@ -98,8 +100,10 @@ def render(
         int, typer.Option(min=0, help="Processor threads of each sequence; 0: an even share.")
     ] = 0,
     device: Annotated[
-        Literal["auto", "cpu", "gpu"],
-        typer.Option(help="Where to render: auto takes a GPU where Blender finds one."),
+        str,
+        typer.Option(
+            help="Where to render: auto (a GPU where Blender finds one), cpu, gpu, or one as cuda:0."
+        ),
     ] = "auto",
     cluster: Annotated[
         str | None,
@@ -143,10 +147,12 @@ def render(
 
     Stopped at any moment and started again with the same options, it goes on where it was.
     """
+    from render_jobs.devices import parse_device
     from whacamole.production.means import Limits, Means, Shard
     from whacamole.production.run import produce
     from whacamole.recipe import load_recipe
 
+    parse_device(device)  # a mistyped name is told before anything begins
     given = {
         "motions": motions, "shots": shots, "shots_per_motion": shots_per_motion, "frames": frames,
         "people": people, "stages": stages,
