@@ -10,6 +10,7 @@ from functools import partial
 from itertools import chain, islice
 from multiprocessing import get_context
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 import scipy.sparse
@@ -31,6 +32,7 @@ Progress = Callable[[str, str, SequenceScore | str], None]
 Outcomes = list[tuple[str, SequenceScore | str, str]]
 """Of each method its name, the scores or why there are none, and the truths it was given."""
 Work = Callable[[str], Outcomes]
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -157,18 +159,32 @@ def score_recording(
 def _score(
     sequence_id: str, source: TruthSource, readers: Mapping[str, PredictionFolder], scorer: Scorer
 ) -> Outcomes:
-    try:
-        truth = source.read(sequence_id)
-    except EvaluationError as error:
-        return [(name, f"ground truth: {error}", "") for name in readers]
+    truth = _tried("ground truth", lambda: source.read(sequence_id))
+    if isinstance(truth, str):
+        return [(name, truth, "") for name in readers]
     outcomes: Outcomes = []
     for name, reader in readers.items():
-        try:
-            prediction = reader.read(sequence_id, truth.fps)
-            outcomes.append((name, scorer.score(truth, prediction), prediction.ground_truth_used))
-        except EvaluationError as error:
-            outcomes.append((name, str(error), ""))
+        prediction = _tried("prediction", partial(reader.read, sequence_id, truth.fps))
+        if isinstance(prediction, str):
+            outcomes.append((name, prediction, ""))
+            continue
+        score = _tried("scoring", partial(scorer.score, truth, prediction))
+        outcomes.append((name, score, prediction.ground_truth_used))
     return outcomes
+
+
+def _tried(what: str, act: Callable[[], T]) -> T | str:
+    """What ``act`` returns, or one line on why it does not.
+
+    Files come from anywhere: whatever a reader or a metric did not foresee costs one sequence, not the rest.
+    """
+    try:
+        return act()
+    except EvaluationError as error:
+        return f"{what}: {error}" if what == "ground truth" else str(error)
+    except Exception as error:
+        said = " ".join(str(error).split())
+        return f"{what} failed ({type(error).__name__}: {said}); check the arrays of its files"
 
 
 def _in_order(work: Work, ids: Sequence[str], jobs: int) -> Iterator[tuple[str, Outcomes]]:

@@ -11,7 +11,15 @@ from whacamole.body import PARENTS
 from whacamole.errors import EvaluationError
 from whacamole.evaluation.bodies import Body, Float32Array, LocalPose, full_expression
 from whacamole.evaluation.core.alignment import FloatArray
-from whacamole.evaluation.records import BoolArray, CameraTrack, IntArray, PersonTrack, Placement, Space
+from whacamole.evaluation.records import (
+    BoolArray,
+    CameraTrack,
+    IntArray,
+    PersonTrack,
+    Placement,
+    Space,
+    usable,
+)
 from whacamole.evaluation.smpl import chain
 
 
@@ -52,6 +60,7 @@ class Figure:
         self._T_world_camera = None if camera is None else camera.T_world_camera[self.rows]
         self._smooth_root = smooth_root
         betas = person.betas if person.betas.ndim == 1 else person.betas[self.rows]
+        betas = betas if len(self.rows) else np.zeros_like(betas)
         self.betas = betas.mean(axis=0) if mean_betas and betas.ndim == 2 and len(betas) else betas
         self._roots: dict[Space, tuple[FloatArray, FloatArray] | None] = {}
 
@@ -165,7 +174,7 @@ class Figure:
 
 
 def _finite(person: PersonTrack, stored: Mapping[Space, FloatArray]) -> BoolArray:
-    """Frames (T,) whose every number is finite."""
+    """Frames (T,) whose every number is finite and no larger than a body or a place allows."""
     placements: list[Placement] = [p for p in (person.world, person.camera) if p is not None]
     arrays: list[FloatArray | None] = [
         person.body_pose, person.left_hand_pose, person.right_hand_pose, person.jaw_pose, person.leye_pose,
@@ -174,9 +183,6 @@ def _finite(person: PersonTrack, stored: Mapping[Space, FloatArray]) -> BoolArra
     ]  # fmt: skip
     if person.betas.ndim == 2:
         arrays.append(person.betas)
-    T = len(person.valid)
-    finite = np.full(T, bool(np.isfinite(person.betas).all()) or person.betas.ndim == 2)
-    for array in arrays:
-        if array is not None:
-            finite &= np.isfinite(array.reshape(T, -1)).all(axis=1)
-    return finite
+    shaped = person.betas.ndim == 2 or bool(usable(person.betas[None])[0])
+    given = [usable(array) for array in arrays if array is not None]
+    return np.asarray(np.logical_and.reduce([np.full(len(person.valid), shaped), *given]))

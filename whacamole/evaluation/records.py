@@ -5,7 +5,7 @@ dataset, of a benchmark or of a method's output, returns a :class:`Recording`.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
@@ -16,9 +16,20 @@ from whacamole.evaluation.core.alignment import FloatArray
 BoolArray = npt.NDArray[np.bool_]
 IntArray = npt.NDArray[np.intp]
 
+MOST = 1e6
+"""Metres, radians or coefficients beyond which a value is taken for damage."""
+
+NOT_RIGID = 0.01
+"""How far R Rᵀ of a camera's pose may be from the identity."""
+
 BodyKind = Literal["smplx", "smplh", "smpl"]
 Space = Literal["world", "camera"]
 SPACES: tuple[Space, ...] = ("world", "camera")
+
+
+def usable(array: FloatArray) -> BoolArray:
+    """Which rows (T,) of (T, …) are finite and within :data:`MOST`."""
+    return np.asarray((np.abs(array) < MOST).all(axis=tuple(range(1, array.ndim))))  # NaN compares false
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,6 +93,12 @@ class CameraTrack:
     T_world_camera: FloatArray
     valid: BoolArray
     K: FloatArray | None = None
+
+    def checked(self) -> "CameraTrack":
+        """The same without the frames whose pose is not finite, beyond :data:`MOST`, or not rigid."""
+        R = np.where(usable(self.T_world_camera)[:, None, None], self.T_world_camera[:, :3, :3], 0.0)
+        rigid = np.abs(R @ np.swapaxes(R, -1, -2) - np.eye(3)).max(axis=(1, 2), initial=0.0) < NOT_RIGID
+        return replace(self, valid=self.valid & rigid & (np.linalg.det(R) > 0.0))
 
 
 @dataclass(frozen=True, eq=False)

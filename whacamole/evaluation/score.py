@@ -1,6 +1,6 @@
 """One sequence: match its people, score each, score the scene, count what could not be scored."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -45,6 +45,7 @@ class Scorer:
         """
         row_of_truth, frame_of_prediction = _common_frames(truth, prediction)
         score = _empty(truth, prediction)
+        prediction = _with_checked_camera(prediction, score)
         posed = bool(prediction.people)  # a camera alone needs nobody's body
         people = [self._figure(truth, i, posed=posed) for i in range(len(truth.people))]
         tracks = [self._figure(prediction, i, predicted=True) for i in range(len(prediction.people))]
@@ -99,6 +100,17 @@ def _common_frames(truth: Recording, prediction: Recording) -> tuple[IntArray, I
     frame_of_prediction = np.full(prediction.num_frames, -1, dtype=np.intp)
     row_of_truth[at_truth], frame_of_prediction[at_prediction] = at_prediction, at_truth
     return row_of_truth, frame_of_prediction
+
+
+def _with_checked_camera(prediction: Recording, score: SequenceScore) -> Recording:
+    """The prediction without camera poses that are none, counted in a note."""
+    if prediction.camera is None:
+        return prediction
+    camera = prediction.camera.checked()
+    lost = int(prediction.camera.valid.sum() - camera.valid.sum())
+    if lost:
+        score.note(f"{lost} camera poses are not finite or not rigid: left out")
+    return replace(prediction, camera=camera)
 
 
 def _empty(truth: Recording, prediction: Recording) -> SequenceScore:

@@ -56,8 +56,7 @@ def _common_cameras(
     """Rows of the truth with both cameras (F,), the true and the predicted poses (F, 4, 4)."""
     if truth is None or prediction is None:
         return None
-    usable = prediction.valid & np.isfinite(prediction.T_world_camera).all(axis=(1, 2))
-    rows = np.flatnonzero(truth.valid & (row_of_truth >= 0) & usable[row_of_truth])
+    rows = np.flatnonzero(truth.valid & (row_of_truth >= 0) & prediction.valid[row_of_truth])
     if not len(rows):
         return None
     return rows, truth.T_world_camera[rows], prediction.T_world_camera[row_of_truth[rows]]

@@ -16,6 +16,7 @@ from whacamole.evaluation import (
     Placement,
     PredictionFolder,
     Recording,
+    evaluate,
     pooled,
     score_recording,
 )
@@ -327,3 +328,49 @@ def test_betas_a_frame_are_taken_as_such(tmp_path, scenes, make):
 
 def test_every_format_has_a_name_and_a_place():
     assert list(FORMATS) == ["native", "wham", "gvhmr", "prompthmr", "tram", "slahmr", "tum"]
+
+
+FAULTS = {
+    "nothing": lambda a: a[..., :0],
+    "one value": lambda a: np.float64(1.0),
+    "nan": lambda a: np.full(a.shape, np.nan),
+    "infinite": lambda a: np.full(a.shape, np.inf),
+    "zero": np.zeros_like,
+    "huge": lambda a: np.full(a.shape, 1e300),
+    "negative": lambda a: np.full(a.shape, -7.0),
+    "words": lambda a: np.full(a.shape, "x"),
+    "fewer rows": lambda a: a[:-1],
+}
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+@pytest.mark.filterwarnings("error")
+def test_no_array_of_a_native_file_can_stop_the_rest(tmp_path, scenes, make, dataset, fault):
+    good = make["prediction"](scenes[0], noise=0.01)
+    for key, array in good.items():
+        if np.ndim(array) and np.asarray(array).dtype.kind in "fiu":
+            bad = {**good, key: FAULTS[fault](np.asarray(array))}
+            folder = make["predictions"](tmp_path / key, {scenes[0].id: bad, scenes[1].id: good})
+            result = evaluate(dataset, folder, bodies=Bodies(vertices=False))
+            method = result.methods[0]
+            assert scenes[1].id in method.sequences, key
+            assert not any("\n" in line or " failed (" in line for line in method.failures.values()), (
+                key, method.failures,
+            )  # fmt: skip
+
+
+def test_what_nobody_foresaw_costs_one_sequence(tmp_path, scenes, make, dataset, monkeypatch):
+    folder = make["predictions"](tmp_path, {s.id: make["prediction"](s) for s in scenes})
+    usual = PredictionFolder.read
+
+    def read(self, sequence_id, fps):
+        if sequence_id == scenes[0].id:
+            raise AttributeError("no\nsuch thing")
+        return usual(self, sequence_id, fps)
+
+    monkeypatch.setattr(PredictionFolder, "read", read)
+    method = evaluate(dataset, folder, bodies=Bodies(vertices=False)).methods[0]
+    assert method.failures == {
+        scenes[0].id: "prediction failed (AttributeError: no such thing); check the arrays of its files"
+    }
+    assert len(method.sequences) == len(scenes) - 1

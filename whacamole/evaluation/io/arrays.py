@@ -11,6 +11,10 @@ from scipy.spatial.transform import Rotation
 
 from whacamole.errors import EvaluationError
 from whacamole.evaluation.core.alignment import FloatArray
+from whacamole.evaluation.records import IntArray
+
+MAX_FRAMES = 1_000_000
+"""Of a video: nine hours at 30 frames a second; a larger number is a damaged one."""
 
 
 def read_npz(path: Path) -> dict[str, Any]:
@@ -62,6 +66,20 @@ def take(
     return array
 
 
+def whole_numbers(
+    values: Mapping[Any, Any], key: str, path: Path, *shapes: tuple[int | None, ...], default: Any = None
+) -> IntArray:
+    """:func:`take` of whole numbers.
+
+    Raises:
+        EvaluationError: also where a value is none.
+    """
+    given = take(values, key, path, *shapes, default=default)
+    if not (np.abs(given) < 2.0**53).all() or (given != np.round(given)).any():
+        raise EvaluationError(f"{path}: {key!r} holds values that are no whole numbers")
+    return given.astype(np.intp)
+
+
 def text(values: Mapping[str, Any], key: str, default: str = "") -> str:
     """A string stored as a 0-d array."""
     return str(values[key]) if key in values else default
@@ -100,8 +118,21 @@ def intrinsics(focal: FloatArray, centre: FloatArray, frames: int) -> FloatArray
     return K
 
 
-def spread_rows(values: FloatArray, rows: Any, frames: int) -> FloatArray:
-    """``values`` (F, …) at ``rows`` of (frames, …), NaN elsewhere."""
+def frame_numbers(values: Mapping[Any, Any], key: str, path: Path, count: int | None = None) -> IntArray:
+    """Frames (F,) of a track, counted from 0: not negative, each once, below ``count``.
+
+    Raises:
+        EvaluationError: anything else.
+    """
+    given = whole_numbers(values, key, path, (None,))
+    most = MAX_FRAMES if count is None else count
+    if len(given) and not (given.min() >= 0 and given.max() < most and len(np.unique(given)) == len(given)):
+        raise EvaluationError(f"{path}: {key!r} is not of different frames from 0 to {most - 1}")
+    return given
+
+
+def spread_rows(values: FloatArray, rows: IntArray, frames: int) -> FloatArray:
+    """``values`` (F, …) at ``rows`` (F,) of (frames, …), NaN elsewhere."""
     result = np.full((frames, *values.shape[1:]), np.nan)
     result[rows] = values
     return result

@@ -7,7 +7,7 @@ import numpy as np
 
 from whacamole.errors import EvaluationError
 from whacamole.evaluation.core.alignment import FloatArray
-from whacamole.evaluation.io.arrays import read_npz, take, text
+from whacamole.evaluation.io.arrays import read_npz, take, text, whole_numbers
 from whacamole.evaluation.records import CameraTrack, GroundContact, PersonTrack, Placement, Recording
 
 _PER_FRAME = {
@@ -30,7 +30,7 @@ def read_native(path: Path, sequence_id: str, fps: float) -> Recording:
         EvaluationError: the file cannot be used; one line.
     """
     values = read_npz(path)
-    frame_index = take(values, "frame_index", path, (None,)).astype(np.intp)
+    frame_index = whole_numbers(values, "frame_index", path, (None,))
     if (np.diff(frame_index) <= 0).any():
         raise EvaluationError(f"{path}: 'frame_index' does not ascend; sort the frames")
     T = len(frame_index)
@@ -66,7 +66,7 @@ def people_of(values: dict[str, Any], path: Path, T: int) -> tuple[PersonTrack, 
         raise EvaluationError(
             f"{path}: no global_orient_world/transl_world and no global_orient_camera/transl_camera"
         )
-    track_id = take(values, "track_id", path, (P,), default=np.arange(1, P + 1)).astype(int)
+    track_id = whole_numbers(values, "track_id", path, (P,), default=np.arange(1, P + 1))
     genders = np.broadcast_to(np.asarray(values.get("gender", "neutral")).astype(str), (P,))
     return tuple(
         PersonTrack(

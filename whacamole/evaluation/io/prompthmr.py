@@ -8,7 +8,15 @@ import numpy as np
 from whacamole.errors import EvaluationError
 from whacamole.evaluation.core.alignment import FloatArray
 from whacamole.evaluation.io import inert
-from whacamole.evaluation.io.arrays import axis_angles, from_matrices, intrinsics, poses, spread_rows, take
+from whacamole.evaluation.io.arrays import (
+    axis_angles,
+    frame_numbers,
+    from_matrices,
+    intrinsics,
+    poses,
+    spread_rows,
+    take,
+)
 from whacamole.evaluation.records import CameraTrack, PersonTrack, Placement, Recording
 
 
@@ -44,7 +52,7 @@ def read_prompthmr(path: Path, sequence_id: str, fps: float) -> Recording:
 
 
 def _person(person: dict[str, Any], path: Path, number: int, T: int) -> PersonTrack:
-    rows = take(person, "frames", path, (None,)).astype(np.intp)
+    rows = frame_numbers(person, "frames", path, T)
     F, world, camera = len(rows), person.get("smplx_world", {}), person.get("smplx_cam", {})
     pose = axis_angles(take(world, "pose", path, (F, 165)))
     orient = from_matrices(take(camera, "rotmat", path, (F, 55, 3, 3))[:, 0])

@@ -7,7 +7,15 @@ import numpy as np
 
 from whacamole.errors import EvaluationError
 from whacamole.evaluation.io import inert
-from whacamole.evaluation.io.arrays import from_matrices, intrinsics, poses, read_npz, spread_rows, take
+from whacamole.evaluation.io.arrays import (
+    frame_numbers,
+    from_matrices,
+    intrinsics,
+    poses,
+    read_npz,
+    spread_rows,
+    take,
+)
 from whacamole.evaluation.records import CameraTrack, PersonTrack, Placement, Recording
 
 
@@ -50,9 +58,7 @@ def _dict(path: Path) -> dict[str, Any]:
 
 
 def _person(values: dict[str, Any], path: Path, number: int, T: int) -> PersonTrack:
-    rows = take(values, "frame", path, (None,)).astype(np.intp)
-    if len(rows) and rows.max() >= T:
-        raise EvaluationError(f"{path}: frame {rows.max()} but the camera has {T} frames")
+    rows = frame_numbers(values, "frame", path, T)
     F = len(rows)
     rotations = spread_rows(from_matrices(take(values, "pred_rotmat", path, (F, 24, 3, 3))), rows, T)
     transl = take(values, "pred_trans", path, (F, 3), (F, 1, 3)).reshape(F, 3)

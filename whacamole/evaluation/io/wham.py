@@ -6,7 +6,7 @@ import numpy as np
 
 from whacamole.errors import EvaluationError
 from whacamole.evaluation.io import inert
-from whacamole.evaluation.io.arrays import axis_angles, spread_rows, take
+from whacamole.evaluation.io.arrays import axis_angles, frame_numbers, spread_rows, take
 from whacamole.evaluation.records import PersonTrack, Placement, Recording
 
 
@@ -24,8 +24,8 @@ def read_wham(path: Path, sequence_id: str, fps: float) -> Recording:
         raise EvaluationError(
             f"{path}: holds no tracks; give the wham_output.pkl of WHAM's demo (--save_pkl)"
         )
-    frames = {key: take(track, "frame_ids", path, (None,)).astype(np.intp) for key, track in tracks.items()}
-    last = max(int(ids.max()) for ids in frames.values() if len(ids))
+    frames = {key: frame_numbers(track, "frame_ids", path) for key, track in tracks.items()}
+    last = max((int(ids.max()) for ids in frames.values() if len(ids)), default=-1)
     people = []
     for number, (key, track) in enumerate(tracks.items()):
         F = len(frames[key])
