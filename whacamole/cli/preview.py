@@ -15,7 +15,7 @@ def preview(
         str,
         typer.Option(
             help="By commas: rgb; mesh, joints, boxes, ids, contacts (over one picture); mask, depth, "
-            "normal, flow; map (from above)."
+            "normal, flow; map, aside (the scene)."
         ),
     ] = "rgb,mesh,ids,contacts,map",
     video: Annotated[bool, typer.Option(help="Write <id>.mp4.")] = True,

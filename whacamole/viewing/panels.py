@@ -13,6 +13,7 @@ from whacamole.dataset import Sequence
 from whacamole.errors import DatasetError
 from whacamole.labels.overlay import OverlayStyle, overlay_frame
 from whacamole.viewing.above import FromAbove
+from whacamole.viewing.aside import FromAside
 from whacamole.viewing.bodies import actors_of, contact_points
 from whacamole.viewing.colouring import (
     DepthScale,
@@ -43,6 +44,7 @@ LAYERS: Mapping[str, str] = MappingProxyType(
         "normal": "normals: red right, green up, blue towards the camera",
         "flow": "flow to the next frame with a wheel of directions",
         "map": "the scene from above",
+        "aside": "the scene from aside, with the frame inside the camera",
     }
 )
 """What can be asked for."""
@@ -104,7 +106,7 @@ class Panels:
             "mask": lambda i: colour_mask(sequence.mask(i)),
         }
         self._legends: dict[str, Image.Image] = {}
-        self._captions = {"labels": ", ".join(self._over), "map": "from above"}
+        self._captions = {"labels": ", ".join(self._over), "map": "from above", "aside": "from aside"}
         self._scales()
 
     def _scales(self) -> None:
@@ -122,6 +124,8 @@ class Panels:
             self._legends["flow"] = flow_legend(longest, self.cell[1])
         if "map" in self.names:
             self._draw["map"] = FromAbove(self.sequence, *self.cell).frame
+        if "aside" in self.names:
+            self._draw["aside"] = FromAside(self.sequence, self._model, *self.cell).frame
 
     def picture(self, name: str, frame: int) -> Image.Image:
         """One picture, of the size of a cell."""

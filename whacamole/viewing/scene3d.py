@@ -14,6 +14,7 @@ from whacamole.labels.shading import track_colour
 from whacamole.viewing.bodies import Actor, ContactPoints, Float32s, Floats, contact_points
 from whacamole.viewing.prediction import Prediction
 from whacamole.viewing.thinning import Surface
+from whacamole.viewing.viewpoint import FOV, Viewpoint
 
 __all__ = ["LAYERS", "Look", "Scene3D"]
 
@@ -188,9 +189,8 @@ class Scene3D:
         """The ground, what stands around, and where to look from first."""
         scene, eyes = self.server.scene, self.sequence.camera["T_world_camera"][:, :3, 3]
         people = np.concatenate([actor.pelvis() for actor in self.actors]) if self.actors else eyes
-        both = np.concatenate([eyes, people])
-        low, high = both.min(axis=0), both.max(axis=0)
-        middle, reach = (low + high) / 2, float(np.linalg.norm((high - low)[:2])) + 2.5
+        view = Viewpoint.of(eyes, people)
+        middle, reach = view.middle, view.reach
         scene.add_grid(
             "/stage/ground", width=3 * reach, height=3 * reach, plane="xy", cell_size=1.0, section_size=5.0,
             position=(float(middle[0]), float(middle[1]), 0.0),
@@ -203,15 +203,9 @@ class Scene3D:
                     f"/stage/{number}", dimensions=tuple(box["size"]), color=(190, 184, 174), opacity=0.35,
                     position=tuple(box["center"]), wxyz=(float(np.cos(half)), 0.0, 0.0, float(np.sin(half))),
                 )  # fmt: skip
-        # From behind the camera's way and aside, so that the frame it films and the people are both seen.
-        towards = people.mean(axis=0) - eyes.mean(axis=0)
-        towards /= max(float(np.linalg.norm(towards)), 1e-6)
-        across = np.array([towards[1], -towards[0], 0.0])
-        away = 0.42 * reach + 0.6
-        view = eyes.mean(axis=0) - 0.4 * away * towards + 0.8 * away * across + [0.0, 0.0, 0.4 * away]
-        look_at = 0.45 * eyes.mean(axis=0) + 0.55 * people.mean(axis=0)
-        self.server.initial_camera.position = tuple(view.tolist())
-        self.server.initial_camera.look_at = tuple(look_at.tolist())
+        self.server.initial_camera.fov = float(2 * np.arctan(np.tan(FOV / 2) * 9 / 16))
+        self.server.initial_camera.position = tuple(view.eye.tolist())
+        self.server.initial_camera.look_at = tuple(view.target.tolist())
 
 
 def place(handle: Any, pose: Floats) -> None:

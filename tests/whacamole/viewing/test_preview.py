@@ -14,10 +14,12 @@ from whacamole.dataset import Dataset
 from whacamole.errors import DatasetError
 from whacamole.labels.shading import track_colour
 from whacamole.viewing.above import FINE, FromAbove
+from whacamole.viewing.aside import _hang
 from whacamole.viewing.bodies import model_for
 from whacamole.viewing.colouring import DepthScale, colour_depth, colour_flow, colour_normal, depth_legend
 from whacamole.viewing.panels import Panels, layers_named
 from whacamole.viewing.preview import Wanted, make_previews
+from whacamole.viewing.viewpoint import Viewpoint
 
 
 def test_depth_darkens_with_distance_and_nothing_is_grey() -> None:
@@ -117,3 +119,28 @@ def test_one_that_fails_does_not_stop_the_others(dataset: Dataset, tmp_path: Pat
 def test_wrong_layers_are_one_line(dataset: Dataset, layers: str, message: str) -> None:
     with pytest.raises(DatasetError, match=message):
         layers_named(layers, dataset["walk-00"])
+
+
+def test_from_aside_everything_is_in_the_picture(dataset: Dataset) -> None:
+    for sequence in dataset:
+        eyes = sequence.camera["T_world_camera"][:, :3, 3]
+        people = sequence.people["joints_world"][:, :, 0].reshape(-1, 3)
+        K, T = Viewpoint.of(eyes, people).camera(640, 360)
+        local = np.concatenate([eyes, people, people * [1, 1, 0]]) @ T[:3, :3].T + T[:3, 3]
+        assert (local[:, 2] > 0.5).all()
+        pixel = (local @ K.T)[:, :2] / local[:, 2:]
+        assert ((pixel > 0) & (pixel < [640, 360])).all()
+        assert np.ptp(pixel, axis=0).max() > 200  # and fills it
+        np.testing.assert_allclose(T[:3, :3] @ T[:3, :3].T, np.eye(3), atol=1e-12)
+        assert T[:3, :3][0, 2] == pytest.approx(0.0)  # level
+
+
+def test_the_frame_hangs_in_its_corners() -> None:
+    picture = Image.new("RGB", (40, 20), (255, 0, 0))
+    picture.paste((0, 0, 255), (20, 0, 40, 20))
+    canvas = Image.new("RGB", (200, 100), (255, 255, 255))
+    _hang(canvas, picture, [(50, 20), (150, 30), (150, 80), (50, 70)])
+    drawn = np.asarray(canvas).astype(int)
+    assert drawn[45, 60].tolist() == [255, 0, 0]
+    assert drawn[60, 140].tolist() == [0, 0, 255]
+    assert drawn[10, 100].tolist() == [255, 255, 255]
