@@ -134,6 +134,9 @@ class Recipe(BaseModel):
     passes: Names = Field(("rgb", "mask", "depth"), description="what is rendered for each frame")
     image_format: Literal["jpg", "png"] = Field("jpg", description="file format of the colour frames")
     body_model: Path | None = Field(None, description="SMPL-X-schema .npz; none: the embedded CC0 body")
+    textures: Path | None = Field(
+        None, description="folder of pictures for the body model's UV map, worn in place of clothes"
+    )
     seed: int = Field(0, ge=0, lt=2**63, description="the one seed of all choices")
     allow_breaches: bool = Field(
         False, description="render a sequence even where no camera was found that keeps all rules"

@@ -1,12 +1,14 @@
 """A contact sheet of the cast: ``python tools/assets/people_sheet.py --out docs/images/people.jpg``.
 
 Every person comes from one seed and is caught in a moment of the motions that the package carries. With
-``--faces`` the heads are seen closely.
+``--faces`` the heads are seen closely; with ``--hard`` people take the poses of ``hard_poses.py``, a column
+each.
 """
 
 from __future__ import annotations
 
 import argparse
+import itertools
 import shutil
 import sys
 import tempfile
@@ -19,6 +21,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
+sys.path.insert(0, str(Path(__file__).parent))
+
+from hard_poses import HARD_POSES, hard_pose, hard_root
 
 from camera_rigs.path import CameraPath
 from render_jobs import Environment, Mesh, Quality, RenderJob, Sun, run_job
@@ -33,8 +38,12 @@ DISTANCE_M: Final = 40.0
 """The camera stands far off, so that all are seen from the same side."""
 
 STANDING_SHARE: Final = 0.4
+UPRIGHT: Final = np.array([np.pi / 2, 0.0, 0.0])
 TURN_DEG: Final = 35.0
-"""People look up to this far past the camera."""
+"""People look up to this far past the camera …"""
+
+HARD_TURNS_DEG: Final = (35.0, 150.0, -60.0)
+"""… and those in hard poses, row by row, by this much."""
 
 
 def moments(rng: np.random.Generator) -> Iterator[dict[str, NDArray[np.float64]]]:
@@ -42,7 +51,7 @@ def moments(rng: np.random.Generator) -> Iterator[dict[str, NDArray[np.float64]]
     motions: list[Motion] = [read_motion(file) for file in find_motions(embedded_motions())]
     while True:
         pose = np.zeros((21, 3))
-        orient = np.array([np.pi / 2, 0.0, 0.0])
+        orient = UPRIGHT
         if rng.random() < STANDING_SHARE:
             for side, sign in (("left", -1.0), ("right", 1.0)):
                 pose[JOINT_INDEX[f"{side}_shoulder"] - 1] = [0, 0.1 * sign, sign * rng.uniform(1.05, 1.2)]
@@ -53,6 +62,12 @@ def moments(rng: np.random.Generator) -> Iterator[dict[str, NDArray[np.float64]]
             frame = int(rng.integers(len(person.pelvis)))
             pose, orient = person.body_pose[frame], person.global_orient[frame]
         yield {"body_pose": pose, "global_orient_world": orient}
+
+
+def hard_moments() -> Iterator[dict[str, NDArray[np.float64]]]:
+    """One hard pose after another."""
+    for name in itertools.cycle(HARD_POSES):
+        yield {"body_pose": hard_pose(name), "global_orient_world": hard_root(name)}
 
 
 def placed(
@@ -96,7 +111,7 @@ def sheet_job(arguments: argparse.Namespace, textures: Path) -> RenderJob:
     """All people in one scene, side by side and one above the other, seen by one far camera."""
     body = BodyModel.embedded()
     rng = np.random.default_rng(arguments.seed)
-    poses = moments(rng)
+    poses = hard_moments() if arguments.hard else moments(rng)
     rows = -(-arguments.count // arguments.columns)
     look = "face" if arguments.faces else "body"
     width, height = CELL_M[look]
@@ -107,7 +122,11 @@ def sheet_job(arguments: argparse.Namespace, textures: Path) -> RenderJob:
             [(column - (arguments.columns - 1) / 2) * width, 0.0, ((rows - 1) / 2 - row) * height]
         )
         member, moment = cast(arguments.seed + k), next(poses)
-        turn = np.deg2rad(rng.uniform(-TURN_DEG, TURN_DEG))
+        turn = np.deg2rad(
+            HARD_TURNS_DEG[row % len(HARD_TURNS_DEG)]
+            if arguments.hard
+            else float(rng.uniform(-TURN_DEG, TURN_DEG))
+        )
         params = placed(body, member, moment, turn)
         meshes += person_meshes(body, member, params, cell, look, f"p{k:02d}", textures)
     scale = arguments.cell / width
@@ -138,13 +157,15 @@ def main() -> int:
     )
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--count", type=int, default=40)
-    parser.add_argument("--columns", type=int, default=10)
+    parser.add_argument("--columns", type=int, help="default: 10, in hard poses as many as there are")
     parser.add_argument("--seed", type=int, default=0, help="the first person's; the others follow")
     parser.add_argument("--cell", type=int, default=160, help="pixels across a person's place")
     parser.add_argument("--faces", action="store_true")
+    parser.add_argument("--hard", action="store_true", help="in hard poses")
     parser.add_argument("--engine", choices=("cycles", "raster"), default="cycles")
     parser.add_argument("--samples", type=int, default=24)
     arguments = parser.parse_args()
+    arguments.columns = arguments.columns or (len(HARD_POSES) if arguments.hard else 10)
     from PIL import Image
 
     with tempfile.TemporaryDirectory() as folder:

@@ -77,6 +77,13 @@ def render(
         Path | None,
         typer.Option(help="SMPL-X .npz of your own licence.", show_default="the embedded CC0 body"),
     ] = None,
+    textures: Annotated[
+        Path | None,
+        typer.Option(
+            help="Folder of pictures for the body model's UV map, worn in place of clothes.",
+            show_default="clothes of ours",
+        ),
+    ] = None,
     seed: Annotated[int | None, typer.Option(help="The one seed of all choices.", show_default="0")] = None,
     limit: Annotated[
         int | None, typer.Option(help="Make at most so many sequences.", show_default="no limit")
@@ -158,7 +165,8 @@ def render(
         "people": people, "stages": stages,
         "motion_blur": motion_blur, "f_number": f_number, "exposure": exposure, "noise": noise,
         "size": size, "fps": fps, "quality": quality, "engine": engine, "passes": passes,
-        "image_format": image_format, "body_model": body_model, "seed": seed, "limit": limit,
+        "image_format": image_format, "body_model": body_model, "textures": textures, "seed": seed,
+        "limit": limit,
         "allow_breaches": allow_breaches,
     }  # fmt: skip
     overrides: dict[str, Any] = {name: value for name, value in given.items() if value is not None}

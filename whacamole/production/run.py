@@ -182,8 +182,11 @@ def _note_failure(order: SequenceOrder, error: str) -> None:
 def _facts(recipe: Recipe) -> dict[str, Any]:
     """Return what ``dataset.json`` says of the whole dataset."""
     from whacamole.production.sequence import body_of
+    from whacamole.wardrobe.shells import checked_textures
 
     body = body_of(recipe)
+    if recipe.textures is not None:
+        checked_textures(body, recipe.textures)  # before hours of work, not in them
     return {
         "generator": "whacamole",
         "versions": {"whacamole": __version__, **{name: version(name) for name in ("bpy", "numpy", "scipy")}},

@@ -161,6 +161,7 @@ def take_of(order: SequenceOrder, *, textures: Path | None) -> Take:
             stages=recipe.stages,
             companions=[read_motion(file, fps=recipe.fps) for file in order.companions],
             subdivision=SUBDIVISION[recipe.quality],
+            uv_textures=recipe.textures,
         )
     except TakeError as error:
         raise TakeError(f"{motion.path}: {error}") from error

@@ -1,4 +1,4 @@
-"""Who plays a part: a dressed person on the embedded body, or a bare one on a model of the user's own."""
+"""Who plays a part: a member of the cast, on the embedded body or on a model of the user's own."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from render_jobs import Material, Mesh
-from whacamole.body import NUM_BETAS, BodyModel, BodyParams, Posed
+from render_jobs import Mesh
+from whacamole.body import NUM_BETAS, BodyModel, BodyParams
 from whacamole.motion import MotionPerson
 from whacamole.wardrobe import CastMember, cast, dress, fits
 
@@ -23,87 +23,78 @@ their touches."""
 STATURE_AXES = [0, 5]
 """The betas of the embedded body that follow stature and proportions (docs/body.md)."""
 
-SKIN_TONES = (
-    (0.93, 0.78, 0.69), (0.88, 0.70, 0.58), (0.80, 0.61, 0.48), (0.70, 0.51, 0.38),
-    (0.58, 0.40, 0.29), (0.46, 0.31, 0.22), (0.36, 0.24, 0.17), (0.28, 0.18, 0.13),
-)  # fmt: skip
-"""sRGB, from light to dark, drawn evenly for bare bodies."""
-
 
 @dataclass(frozen=True, eq=False)
 class Role:
     """A person's shape and looks.
 
     Attributes:
-        gender: of the person cast.
         betas: (10,) in the shape space of the body model in use.
         relaxed_hands: (2, 15, 3) left and right pose for motions that carry none.
-        member: who it is, with clothes and hair; None for a bare body.
-        skin: sRGB of a bare body.
+        member: who it is, with clothes and hair.
     """
 
-    gender: str
     betas: NDArray[np.float64]
     relaxed_hands: NDArray[np.float64]
-    member: CastMember | None
-    skin: tuple[float, float, float]
+    member: CastMember
+
+    @property
+    def gender(self) -> str:
+        """Of the person cast."""
+        return self.member.gender
 
     def meshes(
         self,
         body: BodyModel,
         params: BodyParams,
-        posed: Posed,
         *,
         textures: Path,
+        uv_textures: Path | None,
         track_id: int,
         subdivision: int,
     ) -> tuple[Mesh, ...]:
         """Return what is drawn of this person in all frames of ``params``, the skin first.
 
         Args:
-            posed: the body of ``params``.
             textures: folder for textures made to order.
+            uv_textures: the user's folder of pictures for the UV map of the body model; None: our clothes.
             track_id: the value in the mask.
             subdivision: levels for skin and clothes.
+
+        Raises:
+            TakeError: ``uv_textures`` has no fitting picture, or the body model no UV map.
         """
-        name = f"person-{track_id}"
-        if self.member is not None:
-            return tuple(
-                dress(
-                    self.member,
-                    body,
-                    params,
-                    textures=textures,
-                    track_id=track_id,
-                    name=name,
-                    subdivision=subdivision,
-                )
+        return tuple(
+            dress(
+                self.member,
+                body,
+                params,
+                textures=textures,
+                track_id=track_id,
+                name=f"person-{track_id}",
+                subdivision=subdivision,
+                uv_textures=uv_textures,
             )
-        material = Material(name=name, base_color=self.skin, roughness=0.55, subsurface=0.1)
-        faces = body.quads if body.quads is not None else body.faces
-        return (Mesh(name, posed.vertices, faces, material, track_id=track_id, subdivision=subdivision),)
+        )
 
 
 def cast_role(rng: np.random.Generator, person: MotionPerson, body: BodyModel, *, interactive: bool) -> Role:
-    """Cast one person of a motion.
+    """Cast one person of a motion: a member of the cast, of the gender that the motion or the body names.
 
-    On the embedded body: a member of the wardrobe's cast, of the motion's gender where the file names one.
-    On a licensed SMPL-X model: the person's own betas where the motion is in that shape space (those of
-    another mean nothing on it), else drawn ones; skin-toned and bare.
+    On a licensed SMPL-X model the member gives skin, hair and clothes; the shape is the person's own where
+    the motion is in that shape space (betas of another mean nothing on it), else a drawn one.
     """
-    skin = SKIN_TONES[int(rng.integers(len(SKIN_TONES)))]
+    named = [gender for gender in (person.gender, body.gender) if gender in ("female", "male")]
+    member = cast(rng, gender=named[0] if named else None)  # type: ignore[arg-type]
     if fits(body):
-        wish = person.gender if person.gender in ("female", "male") else None
-        member = cast(rng, gender=wish)  # type: ignore[arg-type]
         betas = member.betas.copy()
         if interactive:
             betas[STATURE_AXES] *= PAIR_STATURE
-        hands = np.stack([member.left_hand, member.right_hand])
-        return Role(member.gender, betas, hands, member, skin)
+        return Role(betas, np.stack([member.left_hand, member.right_hand]), member)
     own = person.betas[:NUM_BETAS]
     keeps_own = person.shape_space == "smplx" and len(own) == NUM_BETAS
     drawn = rng.normal(0.0, SHAPE_SPREAD, NUM_BETAS).clip(-2.0, 2.0)
-    return Role(person.gender, own if keeps_own else drawn, _mean_hands(body), None, skin)
+    return Role(own if keeps_own else drawn, _mean_hands(body), member)
 
 
 def _mean_hands(body: BodyModel) -> NDArray[np.float64]:

@@ -105,6 +105,7 @@ def stage_take(
     stages: tuple[str, ...] = (),
     companions: Sequence[Motion] = (),
     subdivision: int = 0,
+    uv_textures: Path | None = None,
 ) -> Take:
     """Stage sequence ``shot_index`` of ``motion``.
 
@@ -115,9 +116,10 @@ def stage_take(
         stages: names of stages to draw from; none: all.
         companions: motions of further people, unrelated to the first; those that find no free place stay out.
         subdivision: levels for skin and clothes.
+        uv_textures: the user's folder of pictures for the UV map of the body model.
 
     Raises:
-        TakeError: a motion is too short.
+        TakeError: a motion is too short, or ``uv_textures`` has no fitting picture.
     """
 
     def rng(purpose: str) -> np.random.Generator:
@@ -151,7 +153,12 @@ def stage_take(
             ()
             if textures is None
             else role.meshes(
-                body, params, posed, textures=textures, track_id=number, subdivision=subdivision
+                body,
+                params,
+                textures=textures,
+                uv_textures=uv_textures,
+                track_id=number,
+                subdivision=subdivision,
             ),
         )
         for number, (motion_id, role, params, posed) in enumerate(people, start=1)

@@ -36,7 +36,6 @@ class Item:
         slot: what it is worn as.
         wearer: "female", "male" or "any".
         colouring: how its colours may vary: "cloth", "pattern", "denim", "leather", "hair" or "keep".
-        weight_smoothing: rounds of smoothing of the skinning weights (cloth that hangs between the legs).
         diffuse: texture file; with an alpha channel for hair, brows and lashes.
         normal: normal map file, or None.
     """
@@ -45,7 +44,6 @@ class Item:
     slot: Slot
     wearer: str
     colouring: str
-    weight_smoothing: int
     diffuse: str
     normal: str | None = None
 
@@ -67,7 +65,8 @@ class ItemGeometry:
         offsets: (n, 3) [m].
         faces: (F, 4), −1 in the last column of a triangle.
         uv: (F, 4, 2) one coordinate a face corner, v up.
-        hidden: (V,) body vertices the item covers.
+        hidden: (V,) body vertices that cannot be seen under the item.
+        under: (V,) all body vertices under the item, the hidden ones among them.
     """
 
     refs: npt.NDArray[np.int32]
@@ -76,6 +75,7 @@ class ItemGeometry:
     faces: npt.NDArray[np.int32]
     uv: npt.NDArray[np.float32]
     hidden: npt.NDArray[np.bool_]
+    under: npt.NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -151,15 +151,21 @@ class Catalogue:
             np.where(get(key) == _NO_VERTEX, -1, get(key).astype(np.int32)) for key in ("faces", "uv_faces")
         )
         count = int(self._arrays["body_vertices"])
-        packed = self._arrays.get(f"{name}/hidden")
-        hidden = np.zeros(count, bool) if packed is None else np.unpackbits(packed, count=count).astype(bool)
+
+        def flags(key: str) -> npt.NDArray[np.bool_]:
+            packed = self._arrays.get(f"{name}/{key}")
+            if packed is None:
+                return np.zeros(count, bool)
+            return np.unpackbits(packed, count=count).astype(bool)
+
         return ItemGeometry(
             refs=get("refs").astype(np.int32),
             weights=np.concatenate([weights, 1 - weights.sum(axis=1, keepdims=True)], axis=1),
             offsets=get("offsets").astype(np.float64),
             faces=faces.astype(np.int32),
             uv=(get("uv").astype(np.float32) / _UV_UNIT)[uv_faces],
-            hidden=hidden,
+            hidden=flags("hidden"),
+            under=flags("under"),
         )
 
 

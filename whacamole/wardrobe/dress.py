@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from render_jobs.scene import Material, Mesh
-from whacamole.body import BodyModel, BodyParams
+from whacamole.body import BodyModel, BodyParams, vertex_normals
 from whacamole.wardrobe.cast import CastMember
 from whacamole.wardrobe.catalogue import Catalogue, Item, catalogue
 from whacamole.wardrobe.layer import item_layer, join
@@ -24,6 +24,9 @@ BoolArray = npt.NDArray[np.bool_]
 
 SKIN_PART, EYE_PARTS, TEETH_PARTS, TONGUE_PART = 0, (1, 2), (3, 4), 5
 """Values of the body file's ``vertex_part``."""
+
+DRAWN_IN: Final = np.float32(0.006)
+"""How far skin that must be kept under the edge of a garment is lowered [m]."""
 
 ROUGHNESS: Final = {"leather": 0.5, "hair": 0.45, "cloth": 0.85, "pattern": 0.85, "denim": 0.9, "keep": 0.75}
 
@@ -103,13 +106,13 @@ def dress(
     wardrobe, folder = catalogue(), TextureFolder(textures)
     look = _Look(name, track_id, subdivision)
     items = [wardrobe.items[worn.item] for worn in member.worn]
-    hidden = np.zeros(body.num_vertices, dtype=bool)
-    for item in items:
-        hidden |= wardrobe.geometry(item.name).hidden
+    geometries = [wardrobe.geometry(item.name) for item in items]
+    hidden = np.any([geometry.hidden for geometry in geometries], axis=0)
+    under = np.any([geometry.under for geometry in geometries], axis=0) & ~hidden
     skin = skin_texture(wardrobe, member, folder)
     eyes = eye_texture(member.eye_colour, folder)
     return [
-        *_body_meshes(look, body, posed, hidden, skin, eyes),
+        *_body_meshes(look, body, _drawn_in(body, posed, under), hidden, skin, eyes),
         *_item_meshes(look, wardrobe, member, items, body, params, folder),
     ]
 
@@ -137,6 +140,21 @@ def _body_meshes(
     yield look.mesh(
         "tongue", *_cut(posed, body.quads[tongue]), Material(base_color=(0.60, 0.27, 0.26), roughness=0.4)
     )
+
+
+def _drawn_in(body: BodyModel, posed: Float32Array, under: BoolArray) -> Float32Array:
+    """The body with the skin at the edges of clothes lowered, so that it stays below the cloth in all poses.
+
+    Only what cloth covers moves: bare skin is that of the labels.
+    """
+    faces = body.faces[under[body.faces].any(axis=1)]
+    used = np.unique(faces)
+    number = np.zeros(body.num_vertices, dtype=np.int32)
+    number[used] = np.arange(len(used))
+    normals = vertex_normals(posed[:, used], number[faces])
+    lowered = posed.copy()
+    lowered[:, under] -= DRAWN_IN * normals[:, number[under]]
+    return lowered
 
 
 def _cut(vertices: Float32Array, faces: Int32Array) -> tuple[Float32Array, Int32Array]:

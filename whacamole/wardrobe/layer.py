@@ -17,7 +17,7 @@ import scipy.spatial
 
 from whacamole.body import NUM_BETAS, NUM_EXPRESSION, NUM_JOINTS, BodyModel, BodyParams
 from whacamole.body.skinning import BLOCK, Skin, rotations, skin_block
-from whacamole.wardrobe.catalogue import Catalogue, ItemGeometry, Slot
+from whacamole.wardrobe.catalogue import Catalogue, Slot
 
 Float32Array = npt.NDArray[np.float32]
 
@@ -96,8 +96,6 @@ def item_layer(wardrobe: Catalogue, name: str) -> Layer:
         convex = np.clip(geometry.weights, 0, None)
         carry = _mix(geometry.refs, convex / convex.sum(axis=1, keepdims=True), len(support.v_template))
     weights = carry @ support.weights
-    for _ in range(wardrobe.items[name].weight_smoothing):
-        weights = _smoother(geometry) @ weights
     carry_axes = scipy.sparse.kron(carry, scipy.sparse.eye_array(3), format="csr")
     shape = mix @ support.shapedirs.reshape(len(support.v_template), -1)
     expression = mix @ support.expression_dirs.reshape(len(support.v_template), -1)
@@ -133,18 +131,3 @@ def _nearest(points: npt.NDArray[np.float64], support: Float32Array) -> scipy.sp
     share /= share.sum(axis=1, keepdims=True)
     rows = np.repeat(np.arange(len(points)), CARRIERS)
     return scipy.sparse.csr_array((share.ravel(), (rows, index.ravel())), shape=(len(points), len(support)))
-
-
-def _smoother(geometry: ItemGeometry) -> scipy.sparse.csr_array:
-    """Half a vertex's own value, half the mean of its neighbours'."""
-    faces = geometry.faces
-    corners = np.where(faces < 0, faces[:, :1], faces)
-    edges = np.concatenate([corners[:, [k, (k + 1) % 4]] for k in range(4)])
-    edges = np.concatenate([edges, edges[:, ::-1]])
-    edges = np.unique(edges[edges[:, 0] != edges[:, 1]], axis=0)
-    count = len(geometry.refs)
-    degree = np.bincount(edges[:, 0], minlength=count)
-    values = 0.5 / degree[edges[:, 0]]
-    neighbours = scipy.sparse.csr_array((values, (edges[:, 0], edges[:, 1])), shape=(count, count))
-    own = scipy.sparse.diags_array(np.where(degree > 0, 0.5, 1.0), format="csr")
-    return scipy.sparse.csr_array(neighbours + own)

@@ -88,17 +88,14 @@ def dress_in_texture(
     """A person whose skin and clothes are one picture on the model's UV map, chosen from a folder by the
     member.
 
-    Files whose path says "female" or "male" are worn by that gender only.
+    Files whose path says "female" or "male" are worn by that gender, unless there are no others.
 
     Raises:
         TakeError: the folder has no pictures, or the model no UV map.
     """
-    if len(body.uv) < 3:
-        raise TakeError(f"{body.name}: the body model has no UV map (vt, ft); leave --textures out")
-    files = [f for f in texture_files(folder) if _gender_of(f.relative_to(folder)) in ("", member.gender)]
-    if not files:
-        raise TakeError(f"{folder}: no .png or .jpg textures for a {member.gender} person; check --textures")
-    chosen = files[_number(member) % len(files)]
+    files = checked_textures(body, folder)
+    fitting = [f for f in files if _gender_of(f.relative_to(folder)) in ("", member.gender)] or files
+    chosen = fitting[_number(member) % len(fitting)]
     material = Material(name=f"{name}-skin", base_color_texture=chosen, roughness=0.65, specular=0.35)
     mesh = Mesh(
         f"{name}-skin",
@@ -110,6 +107,20 @@ def dress_in_texture(
         subdivision=subdivision,
     )
     return [mesh]
+
+
+def checked_textures(body: BodyModel, folder: Path) -> list[Path]:
+    """The pictures of a folder that people on ``body`` may wear.
+
+    Raises:
+        TakeError: the folder has no pictures, or the model no UV map.
+    """
+    if len(body.uv) < 3:
+        raise TakeError(f"{body.name}: the body model has no UV map (vt, ft); leave --textures out")
+    files = texture_files(folder)
+    if not files:
+        raise TakeError(f"{folder}: no .png or .jpg pictures in it; check --textures")
+    return files
 
 
 def texture_files(folder: Path) -> list[Path]:
@@ -131,7 +142,7 @@ def _number(member: CastMember) -> int:
 
 def _long(member: CastMember, slot: str) -> bool:
     """Whether the member's own top has long sleeves, or trousers long legs."""
-    short = ("tee", "tee_fitted", "tee_short", "tee_loose", "shorts", "shorts_denim", "skirt")
+    short = ("tee", "tee_fitted", "tee_short", "tee_loose", "shorts", "shorts_denim", "track_shorts")
     return all(w.item not in short for w in member.worn if catalogue().items[w.item].slot == slot)
 
 

@@ -3,10 +3,12 @@
 import numpy as np
 import pytest
 from PIL import Image
+from scipy.spatial import cKDTree
 
-from whacamole.body import BodyModel
+from whacamole.body import BodyModel, vertex_normals
 from whacamole.wardrobe import Worn, cast, dress, fits
 from whacamole.wardrobe.catalogue import catalogue
+from whacamole.wardrobe.dress import DRAWN_IN, _drawn_in
 
 
 @pytest.fixture(scope="module")
@@ -33,12 +35,23 @@ def test_all_meshes_of_a_person_carry_its_track_and_all_frames(member, dressed):
     assert {worn.item for worn in member.worn} | {"skin", "left-eye", "right-eye", "teeth", "tongue"} == names
 
 
-def test_skin_under_clothes_is_left_out_and_the_rest_is_the_posed_body(body, dressed):
+def test_skin_under_clothes_is_left_out_and_bare_skin_is_the_posed_body(body, member, dressed):
     params, meshes = dressed
     skin = next(mesh for mesh in meshes if mesh.name == "anna-skin")
     assert 0.1 < len(skin.faces) / len(body.quads) < 0.9
-    posed = {tuple(v) for v in body.pose(params).vertices[-1]}
-    assert all(tuple(v) in posed for v in skin.vertices[-1])
+    posed = body.pose(params).vertices
+    distance, vertex = cKDTree(posed[-1]).query(skin.vertices[-1])
+    geometries = [catalogue().geometry(worn.item) for worn in member.worn]
+    under = np.any([geometry.under & ~geometry.hidden for geometry in geometries], axis=0)
+    bare = ~np.any([geometry.under for geometry in geometries], axis=0) & (body.extras["vertex_part"] == 0)
+    assert {tuple(v) for v in posed[-1][bare]} <= {tuple(v) for v in skin.vertices[-1]}
+    np.testing.assert_array_equal(distance[bare[vertex]], 0)
+    # At the edges of clothes it is drawn in, and only in.
+    lowered = posed[-1].copy()
+    lowered[under] = _drawn_in(body, posed, under)[-1][under]
+    normals = vertex_normals(posed[-1], body.faces)
+    np.testing.assert_allclose(((lowered - posed[-1]) * normals)[under].sum(axis=1), -DRAWN_IN, atol=1e-4)
+    np.testing.assert_array_equal(lowered[~under], posed[-1][~under])
 
 
 def test_textures_exist_and_hair_is_cut_by_alpha(dressed):

@@ -39,6 +39,9 @@ RANGES_DEG: Final[dict[str, tuple[tuple[float, float], tuple[float, float], tupl
 }
 """Range of each axis of a left (or middle) joint's rotation vector, by a part of the joint's name."""
 
+GIRTH_KEPT: Final = ("hip", "knee", "elbow", "spine", "index", "middle", "ring", "pinky")
+"""Joints at which the flesh keeps its girth. At a raised shoulder that rule makes the armpit bulge."""
+
 BODY_POSES: Final = 36
 FINGER_POSES: Final = 18
 RIDGE: Final = 6e-4
@@ -96,10 +99,11 @@ def _limb_examples(fine: FineRig, base: Array, joint: int, rng: np.random.Genera
     ]
     vectors += list(rng.uniform(low, high, (count - len(vectors), 3)))
     rotations = Rotation.from_rotvec(vectors).as_matrix()
+    keep_girth = any(part in JOINTS[joint] for part in GIRTH_KEPT)
     offsets = []
     for rotation in rotations:
         local = _local(joint, rotation)
-        offsets.append((fine.unpose(fine.pose(local), local) - base).ravel())
+        offsets.append((fine.unpose(fine.pose(local, keep_girth=keep_girth), local) - base).ravel())
     return np.stack([_feature(r) for r in rotations]), np.stack(offsets)
 
 

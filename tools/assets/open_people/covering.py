@@ -1,11 +1,13 @@
 """Which skin an item covers.
 
 MakeHuman lists the vertices a suit hides, for its own pose. That leaves a rim of skin which may come through
-once the body moves, so everything well under the cloth is hidden as well.
+once the body moves, so everything well under the cloth is hidden as well, and what must stay near an edge is
+marked so that it can be drawn in. At collars the list takes too much: one would look into an empty neck.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -15,12 +17,22 @@ from scipy.spatial import cKDTree
 from open_people.base_mesh import BODY_VERTICES, BaseMesh
 
 Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
 
 NEAR: Final = 0.045
 """Cloth farther from the skin than this (metres) hangs over it and need not cover it."""
 
 INSIDE_EDGE: Final = 0.02
-"""Skin is kept this far (metres) behind the edge of the cloth: one can look in at a neck or a sleeve."""
+"""Skin is kept this far (metres) behind the edge of the cloth: one can look in at a sleeve …"""
+
+INSIDE_COLLAR: Final = 0.055
+"""… and this far behind a collar, which stands off the neck: one looks deep into it from above."""
+
+COLLAR_REACH: Final = 0.14
+"""Edges within this distance of the neck joint (metres) belong to a collar."""
+
+RIM: Final = 0.006
+"""Skin nearer to the edge than this is not under the cloth."""
 
 FACING: Final = 0.5
 """Least cosine between the skin's normal and the way to the cloth."""
@@ -57,8 +69,29 @@ def surface_points(faces: NDArray[np.int64], cloth: Array) -> Array:
     return across.reshape(-1, 3)
 
 
-def well_covered(mesh: BaseMesh, body: Array, faces: NDArray[np.int64], cloth: Array) -> NDArray[np.int64]:
-    """Skin vertices that lie close under the cloth and away from its edges, in the T-pose."""
+@dataclass(frozen=True, eq=False)
+class Cover:
+    """Skin vertices under a piece of cloth.
+
+    Attributes:
+        hidden: cannot be seen and are left out.
+        under: all that lie under the cloth; those that are not hidden are drawn in a little.
+    """
+
+    hidden: Indices
+    under: Indices
+
+
+def cover(mesh: BaseMesh, body: Array, neck: Array, faces: Indices, cloth: Array, listed: Indices) -> Cover:
+    """What the cloth covers in the T-pose.
+
+    Args:
+        mesh: the base mesh.
+        body: ``(N, 3)`` its vertices in the T-pose.
+        neck: ``(3,)`` the neck joint.
+        faces, cloth: the item.
+        listed: skin vertices that MakeHuman hides under the item.
+    """
     skin = body[:BODY_VERTICES]
     points = surface_points(faces, cloth)
     distance, nearest = cKDTree(points).query(skin, distance_upper_bound=NEAR)
@@ -67,5 +100,14 @@ def well_covered(mesh: BaseMesh, body: Array, faces: NDArray[np.int64], cloth: A
     towards = (point - skin[found]) / np.maximum(distance[found], 1e-6)[:, None]
     outside = np.einsum("nk,nk->n", towards, skin_normals(mesh, body)[found]) > FACING
     edges = edge_points(faces, cloth)
-    inside = cKDTree(edges).query(point)[0] > INSIDE_EDGE if len(edges) else np.ones(len(point), bool)
-    return found[outside & inside]
+    collar = edges[np.linalg.norm(edges - neck, axis=1) < COLLAR_REACH]
+    from_edge, from_collar = _distance(point, edges), _distance(point, collar)
+    well = found[outside & (from_edge > INSIDE_EDGE) & (from_collar > INSIDE_COLLAR)]
+    listed = listed[_distance(body[listed], collar) > INSIDE_COLLAR]
+    hidden = np.union1d(listed, well)
+    return Cover(hidden, np.union1d(hidden, found[outside & (from_edge > RIM)]))
+
+
+def _distance(points: Array, to: Array) -> Array:
+    """``(n,)`` distance to the nearest of ``to``; infinite where there is none."""
+    return cKDTree(to).query(points)[0] if len(to) else np.full(len(points), np.inf)

@@ -1,9 +1,10 @@
 """How a body should look when a SMPL-X joint turns: skinned with the fine rig, from the pose it was
 modelled in.
 
-The fine rig has bones that share a twist (upper arm, forearm, thigh, neck) and skins once from the
-modelled A-pose, so it keeps volume where plain skinning with 55 joints collapses. What it does better
-becomes the pose correctives.
+The fine rig has bones that share a twist (upper arm, forearm, thigh, neck). Shoulders, neck and wrists are
+skinned once from the modelled A-pose, so that they do not collapse as they do from a T-pose. Hips, knees,
+elbows, trunk and fingers are blended as rigid motions, which keeps the girth of what bends. What the fine rig
+does better becomes the pose correctives.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 from scipy.spatial.transform import Rotation
 
-from open_people.rig import Rig, skin
+from open_people.rig import Rig, skin, skin_rigidly
 from open_people.skeleton import INDEX, JOINTS, PARENTS, SIDES, joint_of_bones, joint_weights
 from open_people.tpose import TPose
 
@@ -86,8 +87,8 @@ class FineRig:
             place[joint] = place[parent] + turn[parent] @ (self.joints[joint] - self.joints[parent])
         return turn, place
 
-    def pose(self, local: Array) -> Array:
-        """The wanted surface ``(N, 3)``."""
+    def pose(self, local: Array, *, keep_girth: bool = False) -> Array:
+        """The wanted surface ``(N, 3)``; with ``keep_girth`` by blending rigid motions from the T-pose."""
         turn, place = self.forward(local)
         bone_turn = turn[self._bone_joint]
         own_joint = self._bone_joint.copy()
@@ -101,6 +102,10 @@ class FineRig:
                 carried[k] = turn[PARENTS[own_joint[k]]]
         offset = self.tpose.heads - self.joints[own_joint]
         heads = place[own_joint] + np.einsum("bij,bj->bi", carried, offset)
+        if keep_girth:
+            return skin_rigidly(
+                self.rig, self.tpose.vertices, self.rig.weights, bone_turn, self.tpose.heads, heads
+            )
         whole = bone_turn @ self.tpose.turn
         return skin(self.modelled, self.rig.weights, whole, self.tpose.rest_heads, heads)
 

@@ -2,7 +2,8 @@
 
 Only MakeHuman's own core assets: their owners released them as CC0. Everything else in the npm package
 (community clothes under CC BY or AGPL) stays out, and so does ``male_worksuit01``, whose mesh there is
-not the released one.
+not the released one. The skirt of ``female_elegantsuit01`` stays out as well: bound to the skin of two legs,
+it tears where they part.
 """
 
 from __future__ import annotations
@@ -31,7 +32,6 @@ class Item:
         wearer: who may wear it.
         colouring: how colours may vary.
         cut_at: keep only what lies above this height (metres above the ground, neutral body, T-pose).
-        weight_smoothing: rounds of smoothing of the skinning weights, for cloth that hangs between the legs.
     """
 
     name: str
@@ -42,7 +42,6 @@ class Item:
     wearer: Wearer = "any"
     colouring: Colouring = "cloth"
     cut_at: float | None = None
-    weight_smoothing: int = 0
 
 
 def _clothes(name: str, slot: Slot, source: str, **more: object) -> Item:
@@ -66,8 +65,17 @@ ITEMS: Final = (
     _clothes(
         "shorts_denim", "bottom", "female_casualsuit02", part="lower", wearer="female", colouring="denim"
     ),
-    _clothes("skirt", "bottom", "female_elegantsuit01", part="lower", wearer="female", weight_smoothing=14),
+    _clothes(
+        "jeans_cropped",
+        "bottom",
+        "female_casualsuit01",
+        part="lower",
+        wearer="female",
+        colouring="denim",
+        cut_at=0.24,
+    ),
     _clothes("track_trousers", "bottom", "female_sportsuit01", part="lower", wearer="female"),
+    _clothes("track_shorts", "bottom", "female_sportsuit01", part="lower", wearer="female", cut_at=0.56),
     _clothes("jeans_worn", "bottom", "male_casualsuit01", part="lower", wearer="male", colouring="denim"),
     _clothes("jeans", "bottom", "male_casualsuit04", part="lower", colouring="denim"),
     _clothes(

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
+from scipy.spatial.transform import Rotation
 
 from open_people.base_mesh import BaseMesh
 
@@ -78,6 +79,49 @@ def skin(
         -1, 3, 4
     )
     return np.einsum("nij,nj->ni", blended[:, :, :3], vertices) + blended[:, :, 3]
+
+
+def skin_rigidly(
+    rig: Rig,
+    vertices: NDArray[np.float64],
+    weights: sparse.csr_matrix,
+    turn: NDArray[np.float64],
+    heads: NDArray[np.float64],
+    posed_heads: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Dual quaternion skinning: ``vertices (N, 3)`` at rest -> posed, each bone turned about its head.
+
+    Bones are blended as rigid motions and so are vertices moved: a bent hip, knee or elbow keeps its girth
+    where blending matrices would pinch it (Kavan et al. 2008, "Geometric Skinning with Approximate Dual
+    Quaternion Blending").
+
+    Args:
+        rig: the bones; which hangs on which decides the sign of their quaternions.
+        vertices: ``(N, 3)``.
+        weights: ``(N, B)``, rows sum to 1.
+        turn: ``(B, 3, 3)`` global rotations.
+        heads, posed_heads: ``(B, 3)``.
+    """
+    real = _signed_alike(rig, Rotation.from_matrix(turn).as_quat())
+    shift = posed_heads - np.einsum("bij,bj->bi", turn, heads)
+    xyz, w = real[:, :3], real[:, 3:]
+    dual = 0.5 * np.concatenate(
+        [w * shift + np.cross(shift, xyz), -np.sum(xyz * shift, axis=1, keepdims=True)], axis=1
+    )
+    blended = weights @ np.concatenate([real, dual], axis=1)
+    blended /= np.linalg.norm(blended[:, :4], axis=1, keepdims=True)
+    xyz, w, dual_xyz, dual_w = blended[:, :3], blended[:, 3:4], blended[:, 4:7], blended[:, 7:]
+    moved = Rotation.from_quat(blended[:, :4]).apply(vertices)
+    return moved + 2 * (w * dual_xyz - dual_w * xyz + np.cross(xyz, dual_xyz))
+
+
+def _signed_alike(rig: Rig, quaternions: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Of q and −q, which are the same rotation, the one nearer to the parent's: blends go the short way."""
+    out = quaternions.copy()
+    for k, parent in enumerate(rig.parents):
+        if parent >= 0 and out[k] @ out[parent] < 0:
+            out[k] = -out[k]
+    return out
 
 
 def read_rig(mpfb2: Path, mesh: BaseMesh) -> Rig:

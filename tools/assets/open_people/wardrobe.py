@@ -13,10 +13,11 @@ from scipy.spatial import cKDTree
 
 from open_people import textures
 from open_people.base_mesh import BODY_VERTICES, BaseMesh
-from open_people.covering import INSIDE_EDGE, well_covered
+from open_people.covering import INSIDE_EDGE, Cover, cover
 from open_people.fine_rig import FineRig
 from open_people.item_list import ITEMS, LOGOS, SKINS, Item
 from open_people.proxies import Proxy, face_pieces, read_proxy, rest_positions, tpose_offsets
+from open_people.skeleton import INDEX
 from open_people.sources import Sources
 
 WAIST: Final = 0.10
@@ -41,7 +42,7 @@ class Piece:
     item: Item
     proxy: Proxy
     offsets: NDArray[np.float64]
-    hidden: NDArray[np.int64]
+    cover: Cover
 
 
 @dataclass(eq=False)
@@ -70,11 +71,13 @@ def cut_pieces(sources: Sources, mesh: BaseMesh, fine: FineRig) -> list[Piece]:
         if item.cut_at is not None:
             part = _cut(part, fine.modelled, item.cut_at)
         offsets = tpose_offsets(part, fine.rig, fine.modelled, fine.tpose)
-        hidden = _listed(item, whole, part, fine.modelled)
+        listed = _listed(item, whole, part, fine.modelled)
+        covered = Cover(listed, listed)
         if item.slot in COVERING:
             cloth = np.einsum("nk,nkc->nc", part.weights, fine.tpose.vertices[part.refs]) + offsets
-            hidden = np.union1d(hidden, well_covered(mesh, fine.tpose.vertices, part.faces, cloth))
-        out.append(Piece(item, part, offsets, hidden))
+            neck = fine.joints[INDEX["neck"]]
+            covered = cover(mesh, fine.tpose.vertices, neck, part.faces, cloth, listed)
+        out.append(Piece(item, part, offsets, covered))
     return out
 
 
@@ -135,7 +138,6 @@ def item_arrays(
         )
         at = np.einsum("nk,nkc->nc", proxy.weights, fine.tpose.vertices[proxy.refs]) + piece.offsets
         offsets = at - np.einsum("nk,nkc->nc", exact, fine.tpose.vertices[proxy.refs])
-        hidden = np.isin(model_order, piece.hidden)
         out |= {
             f"{name}/refs": np.searchsorted(support, proxy.refs).astype(np.uint16),
             f"{name}/weights": weights,
@@ -144,8 +146,9 @@ def item_arrays(
             f"{name}/uv": np.rint(proxy.uv * UV_UNIT).astype(np.int16),
             f"{name}/uv_faces": np.where(proxy.uv_faces < 0, NO_VERTEX, proxy.uv_faces).astype(np.uint16),
         }
-        if hidden.any():
-            out[f"{name}/hidden"] = np.packbits(hidden)
+        for key, vertices in (("hidden", piece.cover.hidden), ("under", piece.cover.under)):
+            if len(vertices):
+                out[f"{name}/{key}"] = np.packbits(np.isin(model_order, vertices))
     return out
 
 
@@ -160,7 +163,6 @@ def item_entries(pieces: list[Piece], store: TextureStore) -> list[dict[str, Any
             "slot": item.slot,
             "wearer": item.wearer,
             "colouring": item.colouring,
-            "weight_smoothing": item.weight_smoothing,
         }
         alpha = item.slot in ("hair", "brows", "lashes")
         for kind in ("diffuse", "normal"):
