@@ -132,7 +132,9 @@ class Recipe(BaseModel):
         description="renderer; auto: Cycles where Blender runs, else the OpenGL raster engine",
     )
     passes: Names = Field(("rgb", "mask", "depth"), description="what is rendered for each frame")
-    image_format: Literal["jpg", "png"] = Field("jpg", description="file format of the colour frames")
+    image_format: Literal["jpg", "png", "mp4"] = Field(
+        "jpg", description="file format of the colour frames; mp4: one H.264 file a sequence"
+    )
     body_model: Path | None = Field(None, description="SMPL-X-schema .npz; none: the embedded CC0 body")
     textures: Path | None = Field(
         None, description="folder of pictures for the body model's UV map, worn in place of clothes"

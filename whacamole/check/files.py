@@ -72,6 +72,9 @@ def check_files(sequence: Sequence, report: Report, *, checksums: bool) -> bool:
             report.add(f"{label}", "not readable", _reason(error, folder), "a whole file")
     readable = len(report.found) == before
     for name in sequence.facts.get("passes", ()):
+        if name == "rgb" and sequence.facts["image_format"] == "mp4":
+            _check_video(sequence, report)
+            continue
         wanted = {PASSES[name].file(frame, sequence.facts["image_format"]) for frame in range(len(sequence))}
         present = {path.relative_to(folder) for path in (folder / name).glob("*")}
         for file in sorted(wanted - present):
@@ -81,6 +84,16 @@ def check_files(sequence: Sequence, report: Report, *, checksums: bool) -> bool:
     if checksums:
         _check_sums(sequence, report)
     return readable
+
+
+def _check_video(sequence: Sequence, report: Report) -> None:
+    """The video is there, is no shorter than the labels, and holds nothing else in its place."""
+    try:
+        sequence.rgb(len(sequence) - 1)
+    except DatasetError as error:
+        report.add("rgb", "not readable", _reason(error, sequence.layout.folder), "a whole file")
+    if (sequence.layout.folder / "rgb").exists():
+        report.add("rgb", "a folder of frames beside rgb.mp4", "present", "absent")
 
 
 def _check_sums(sequence: Sequence, report: Report) -> None:

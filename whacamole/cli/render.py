@@ -71,7 +71,7 @@ def render(
         ),
     ] = None,
     image_format: Annotated[
-        str | None, typer.Option(help="jpg or png, of the colour frames.", show_default="jpg")
+        str | None, typer.Option(help="jpg, png or mp4, of the colour frames.", show_default="jpg")
     ] = None,
     body_model: Annotated[
         Path | None,

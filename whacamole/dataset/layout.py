@@ -40,6 +40,11 @@ class SequenceLayout:
         return self.folder / "sequence.json"
 
     @property
+    def video(self) -> Path:
+        """The colour frames, where they are one file."""
+        return self.folder / "rgb.mp4"
+
+    @property
     def preview(self) -> Path:
         return self.folder / "preview.jpg"
 

@@ -26,6 +26,7 @@ from render_jobs import PASSES
 from render_jobs.images import read_exr
 from whacamole.dataset.index import read_json, read_summary
 from whacamole.dataset.layout import DatasetLayout, SequenceLayout
+from whacamole.dataset.video import VideoFrames
 from whacamole.errors import DatasetError
 
 __all__ = ["Dataset", "Sequence", "open_dataset"]
@@ -85,7 +86,15 @@ class Sequence:
         Raises:
             DatasetError: the frame is missing or broken.
         """
-        return np.asarray(_image(self._file("rgb", frame)).convert("RGB"))
+        if self.facts["image_format"] != "mp4":
+            return np.asarray(_image(self._file("rgb", frame)).convert("RGB"))
+        self._check_frame(frame)
+        try:
+            return self._video[frame]
+        except (OSError, ValueError, IndexError) as error:
+            raise DatasetError(
+                f"{self.layout.video}: frame {frame} is not readable ({error}); render the sequence again"
+            ) from error
 
     def mask(self, frame: int) -> NDArray[np.integer[Any]]:
         """Return the mask (H, W): track ids, 0 is background."""
@@ -113,9 +122,16 @@ class Sequence:
         for start in range(0, len(self) - length + 1, stride or length):
             yield range(start, start + length)
 
-    def _file(self, name: str, frame: int) -> Path:
+    @cached_property
+    def _video(self) -> VideoFrames:
+        return VideoFrames(self.layout.video, *self.size)
+
+    def _check_frame(self, frame: int) -> None:
         if not 0 <= frame < len(self):
             raise IndexError(f"{self.id}: frame {frame} of {len(self)}")
+
+    def _file(self, name: str, frame: int) -> Path:
+        self._check_frame(frame)
         if name not in self.facts["passes"]:
             made = ", ".join(self.facts["passes"])
             raise DatasetError(

@@ -15,7 +15,7 @@ from whacamole.body import JOINT_INDEX
 from whacamole.dataset import Sequence
 from whacamole.export.frames import Y_UP_FROM_Z_UP, WorldPeople, cameras_in, people_in, rest_pelvis
 from whacamole.export.rows import person_name
-from whacamole.export.source import Source
+from whacamole.export.source import Source, image_format
 
 __all__ = ["SMPL_REST_PELVIS", "write_emdb"]
 
@@ -42,6 +42,7 @@ def write_emdb(source: Source, folder: Path) -> list[str]:
             name = person_name(sequence, person)
             place = folder / SUBJECT / name
             place.mkdir(parents=True)
+            image_format(sequence)  # EMDB has a folder of images
             frames = sequence.layout.folder / "rgb"
             (place / "images").symlink_to(source.from_out(frames, f"{SUBJECT}/{name}"))
             with (place / f"{SUBJECT}_{name}_data.pkl").open("wb") as stream:

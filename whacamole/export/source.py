@@ -7,8 +7,23 @@ from pathlib import Path
 
 from render_jobs import PASSES
 from whacamole.dataset import Dataset, Sequence
+from whacamole.errors import DatasetError
 
-__all__ = ["Source"]
+__all__ = ["Source", "image_format"]
+
+
+def image_format(sequence: Sequence) -> str:
+    """Return the format of a sequence's colour frames, each a file of its own.
+
+    Raises:
+        DatasetError: they are one video.
+    """
+    found = str(sequence.facts["image_format"])
+    if found == "mp4":
+        raise DatasetError(
+            f"{sequence.layout.video}: this format lists single images; render with --image-format jpg or png"
+        )
+    return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +52,7 @@ class Source:
 
     def image(self, sequence: Sequence, frame: int) -> str:
         """Return the path of a colour frame relative to the root of the dataset, with slashes."""
-        file = PASSES["rgb"].file(frame, sequence.facts["image_format"])
+        file = PASSES["rgb"].file(frame, image_format(sequence))
         return (sequence.layout.folder / file).relative_to(self.dataset.layout.root).as_posix()
 
     def from_out(self, path: Path, folder: str = ".") -> str:

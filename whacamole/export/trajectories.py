@@ -5,7 +5,7 @@ from pathlib import Path
 from camera_rigs import CameraPath, to_nerfstudio, to_tum
 from whacamole.dataset import Sequence
 from whacamole.dataset.files import write_json, write_text
-from whacamole.export.source import Source
+from whacamole.export.source import Source, image_format
 
 __all__ = ["write_nerfstudio", "write_tum"]
 
@@ -22,7 +22,7 @@ def write_nerfstudio(source: Source, folder: Path) -> list[str]:
     for sequence in source:
         (folder / sequence.id).mkdir()
         images = source.from_out(sequence.layout.folder / "rgb", sequence.id)
-        template = f"{images}/{{:06d}}.{sequence.facts['image_format']}"
+        template = f"{images}/{{:06d}}.{image_format(sequence)}"
         write_json(
             folder / sequence.id / "transforms.json",
             to_nerfstudio(_path(sequence), template),

@@ -14,7 +14,7 @@ import numpy as np
 from render_jobs import PASSES
 from whacamole.dataset import Sequence
 from whacamole.dataset.clips import cut
-from whacamole.export.source import Source
+from whacamole.export.source import Source, image_format
 
 __all__ = ["FRAMES_A_SHARD", "write_webdataset"]
 
@@ -44,7 +44,7 @@ def _sample(sequence: Sequence, frame: int) -> dict[str, bytes]:
     """Return the files of a sample by suffix: ``jpg`` (or ``png``), ``mask.png``, ``people.npz`` …"""
     files = {}
     for name in sequence.facts["passes"]:
-        file = PASSES[name].file(frame, sequence.facts["image_format"])
+        file = PASSES[name].file(frame, image_format(sequence))
         suffix = file.suffix.lstrip(".")
         content = (sequence.layout.folder / file).read_bytes()
         files[suffix if name == "rgb" else f"{name}.{suffix}"] = content

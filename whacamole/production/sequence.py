@@ -7,12 +7,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from PIL import Image
 
 from camera_rigs import Finding, Plan, PlanError
-from render_jobs import JobResult, RenderJob, missing_frames, quality_preset, run_job
+from render_jobs import PASSES, JobResult, RenderJob, missing_frames, quality_preset, run_job
 from render_jobs.profile import STARTING, Profile, since_start
 from whacamole.body import BodyModel
 from whacamole.dataset import DatasetLayout, Sequence, SequenceLayout, write_summary
+from whacamole.dataset.video import write_video
 from whacamole.errors import TakeError
 from whacamole.labels.camera import Film
 from whacamole.motion import read_motion
@@ -28,6 +30,9 @@ from whacamole.recipe import Recipe
 from whacamole.take import Take, stage_take
 
 __all__ = ["body_of", "make_sequence", "take_of"]
+
+VIDEO_QUALITY = 12
+"""Constant rate factor of rgb.mp4: a training set is no place to save the last third (benchmarks/disk.py)."""
 
 SUBDIVISION = {"draft": 0, "standard": 0, "high": 1}
 """Levels for skin and clothes: the mesh is fine enough for all but close-ups."""
@@ -132,10 +137,19 @@ def _make_in(
     with profile.phase("finish"):
         for name in job.passes:
             (folder / "out" / name).rename(sequence.folder / name)
+        if recipe.image_format == "mp4":
+            _to_video(sequence, take.num_frames, plan.path.fps)
         facts = _facts(order, take, plan, body, labels)
         write_preview(Sequence(order.sequence_id, sequence, facts), body)
         write_summary(sequence, facts)
     return frames
+
+
+def _to_video(sequence: SequenceLayout, frames: int, fps: float) -> None:
+    """Put the colour frames into one file, from pictures without loss."""
+    files = (sequence.folder / PASSES["rgb"].file(frame, "png") for frame in range(frames))
+    write_video(sequence.video, (np.asarray(Image.open(file)) for file in files), fps, quality=VIDEO_QUALITY)
+    shutil.rmtree(sequence.folder / "rgb")
 
 
 def take_of(order: SequenceOrder, *, textures: Path | None) -> Take:
@@ -193,7 +207,7 @@ def render_job(take: Take, plan: Plan, film: Film, recipe: Recipe) -> RenderJob:
         noise=film.noise,
         quality=quality_preset(recipe.quality),
         passes=recipe.passes,
-        image_format=recipe.image_format,
+        image_format="png" if recipe.image_format == "mp4" else recipe.image_format,  # encoded at the end
         seed=film.noise_seed,
     )
 
