@@ -67,7 +67,7 @@ class Table:
     compare: bool = True
 
     def best(self) -> set[tuple[int, int]]:
-        """(row, column) of the best values, as printed; none where only one row has a value."""
+        """(row, column) of the best values, as printed; none in a column whose values do not differ."""
         found = set()
         for c, column in enumerate(self.columns):
             values = np.array([row[1][c] for row in self.rows], dtype=float)
@@ -75,6 +75,8 @@ class Table:
                 continue
             distance = {"lower": values, "higher": -values, "one": np.abs(values - 1.0)}[column.better]
             least = np.round(distance, column.digits)
+            if np.nanmin(least) == np.nanmax(least):
+                continue
             found |= {(int(r), c) for r in np.flatnonzero(least == np.nanmin(least))}
         return found
 

@@ -56,16 +56,17 @@ def headline(result: Result) -> Table:
     """The main table of the protocol."""
     keys = result.protocol.headline
     title = f"{result.truth}, {result.split}: protocol {result.protocol.name}"
-    return methods_table(result, keys, title, notes=_given(result))
+    return methods_table(result, keys, title, notes=(*_given(result), *_partial(result)))
 
 
 def paper_tables(result: Result) -> list[Table]:
     """The paper's tables, of the columns that any method has a value for."""
-    made = []
+    made: list[Table] = []
     for title, keys in PAPER.values():
         present = [key for key in keys if _has(result, key)]
         if present:
-            made.append(methods_table(result, present, title))
+            notes: tuple[str, ...] = () if made else (*_given(result), *_partial(result))
+            made.append(methods_table(result, present, title, notes=notes))
     return made
 
 
@@ -148,4 +149,13 @@ def _given(result: Result) -> tuple[str, ...]:
         f"{method.name} was given true {method.ground_truth_used.replace(',', ', ')}"
         for method in result.methods
         if method.ground_truth_used
+    )
+
+
+def _partial(result: Result) -> tuple[str, ...]:
+    """Who was scored on fewer sequences than there are: its numbers are of other data than the others'."""
+    return tuple(
+        f"{method.name}: {len(method.sequences)} of {len(result.ids)} sequences scored"
+        for method in result.methods
+        if len(method.sequences) < len(result.ids)
     )
