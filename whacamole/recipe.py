@@ -5,8 +5,9 @@ A recipe comes from three places, each over the one before: the defaults below, 
 threads, devices), so the same recipe gives the same labels on any machine.
 """
 
+import textwrap
 from pathlib import Path
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, Literal, Self, get_args, get_origin
 
 import yaml
 from pydantic import (
@@ -224,5 +225,26 @@ def default_yaml() -> str:
     lines = ["# What `whacamole render --recipe FILE` makes; options on the command line go over it."]
     for name, field in Recipe.model_fields.items():
         shown = yaml.safe_dump(defaults[name], default_flow_style=True).replace("\n...", "").strip()
-        lines += ["", f"# {field.description}", f"{name}: {shown}"]
+        choices = _choices(name, field.annotation)
+        listed = textwrap.wrap(f"One of: {', '.join(choices)}.", 100) if choices else []
+        lines += ["", f"# {field.description}", *(f"# {line}" for line in listed), f"{name}: {shown}"]
     return "\n".join(lines) + "\n"
+
+
+def _choices(name: str, annotation: object) -> tuple[str, ...]:
+    """Return the words that an option of the recipe takes, none where any value of its type will do."""
+    if get_origin(annotation) is Literal:
+        return tuple(str(word) for word in get_args(annotation))
+    if name == "shots":
+        from camera_rigs.shots.catalogue import GROUPS, KINDS
+
+        return (*GROUPS, *KINDS)
+    if name == "stages":
+        from whacamole.stage import STAGES
+
+        return tuple(STAGES)
+    if name == "passes":
+        from render_jobs import PASSES
+
+        return tuple(PASSES)
+    return ()

@@ -13,6 +13,14 @@ def test_the_printed_default_is_the_default() -> None:
     assert Recipe.model_validate(yaml.safe_load(default_yaml())) == Recipe.model_validate({})
 
 
+def test_the_printed_default_says_what_may_be_chosen() -> None:
+    comments = " ".join(line[2:] for line in default_yaml().splitlines() if line.startswith("# "))
+    for words in ("draft, standard, high", "auto, all, arc, arc-horizontal", "plaza, park", "rgb, mask"):
+        assert f"One of: {words}" in comments
+    for name in Recipe.model_fields:
+        assert Recipe.model_fields[name].description, name
+
+
 def test_options_go_over_the_file_and_the_file_over_the_defaults(tmp_path: Path) -> None:
     file = tmp_path / "recipe.yaml"
     file.write_text("size: 320x180\nframes: 24\nshots: arc,tracking\n", encoding="utf-8")

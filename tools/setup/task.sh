@@ -7,7 +7,7 @@ cd "$(dirname "$0")/../.."
 
 help() {
   cat <<'TEXT'
-make demo     set everything up, render the embedded motions, name a picture to open
+make demo     set everything up, render three of the embedded motions, name their page to open
 make test     set everything up, run the tests
 make lint     ruff, mypy --strict, import rules
 make bench    run the benchmarks and print their ratios
@@ -23,11 +23,12 @@ TEXT
 
 demo() {
   prepare ""
-  # A runner to track, a dancer and a pair to circle: what each shot is for. The last one names its picture.
+  # A runner to track, a dancer and a pair to circle: what each shot is for.
   for motion in run dance_a duet_00; do
     .venv/bin/whacamole render --motions "whacamole/assets/motions/$motion.npz" --out demo \
       --shots arc,tracking --size 320x180 --frames 24 --quality draft
   done
+  .venv/bin/whacamole page demo --videos 3
 }
 
 run_tests() {
