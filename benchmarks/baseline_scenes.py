@@ -1,6 +1,7 @@
 """A dataset without pixels: embedded motions, filmed by planned cameras, with true people and cameras only.
 
     python -m benchmarks.baseline_scenes OUT [plain | treadmill | skateboard] [SHOTS]
+    python -m benchmarks.baseline_scenes OUT motions    the two as files, to `whacamole render --motions`
 
 Oracle estimators and oracle odometry need no more, so ablations run on many sequences in little time.
 ``treadmill`` takes the way out of walks and runs: legs that walk, a root that stays. ``skateboard`` gives way
@@ -56,6 +57,37 @@ def on_skateboard(person: MotionPerson) -> MotionPerson:
     spine = held["body_pose"][:, JOINT_INDEX["spine2"] - 1]
     spine[:] = spine + sway * np.array([0.3, 1.0, 0.5])
     return replace(person, **held)
+
+
+def write_motions(out: Path) -> int:
+    """Treadmill and skateboard takes of one person as AMASS files, a folder each; returns how many.
+
+    They keep the ids of the motions, so that the baseline takes the weights that never saw their captures.
+    """
+    count = 0
+    for kind, change in (("treadmill", on_treadmill), ("skateboard", on_skateboard)):
+        (out / kind).mkdir(parents=True, exist_ok=True)
+        for file in find_motions(embedded_motions()):
+            motion = read_motion(file)
+            if file.id not in MOVES[kind] or motion.interactive:
+                continue
+            person = change(motion.people[0])
+            T = person.num_frames
+            parts = (
+                person.global_orient, person.body_pose, person.jaw_pose, person.leye_pose, person.reye_pose,
+                person.left_hand_pose, person.right_hand_pose,
+            )  # fmt: skip
+            np.savez(
+                out / kind / f"{file.id}.npz",
+                poses=np.concatenate([part.reshape(T, -1) for part in parts], axis=1),
+                trans=person.pelvis - BodyModel.embedded().rest_joints(np.zeros(NUM_BETAS))[0],
+                betas=np.zeros(NUM_BETAS),
+                gender="neutral",
+                surface_model_type="smplx",
+                mocap_frame_rate=30.0,
+            )
+            count += 1
+    return count
 
 
 def staged(motion: Motion, body: BodyModel, rng: np.random.Generator) -> list[BodyParams]:
@@ -136,5 +168,8 @@ def _write_one(layout: DatasetLayout, motion: Motion, shot: int, body: BodyModel
 
 if __name__ == "__main__":
     kind_asked = sys.argv[2] if len(sys.argv) > 2 else "plain"
-    made = write(Path(sys.argv[1]), kind_asked, int(sys.argv[3]) if len(sys.argv) > 3 else 2)
-    print(f"{made} sequences in {sys.argv[1]}")
+    if kind_asked == "motions":
+        print(f"{write_motions(Path(sys.argv[1]))} motions in {sys.argv[1]}")
+    else:
+        made = write(Path(sys.argv[1]), kind_asked, int(sys.argv[3]) if len(sys.argv) > 3 else 2)
+        print(f"{made} sequences in {sys.argv[1]}")
