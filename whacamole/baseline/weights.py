@@ -31,12 +31,21 @@ def save_weights(path: Path, weights: Mapping[str, NDArray[np.float32]], about: 
     plain = {name: np.ascontiguousarray(value) for name, value in weights.items()}
     beside = path.with_name(f".{path.name}.part")
     try:
-        beside.write_bytes(save(plain, metadata=dict(about)))
+        beside.write_bytes(_in_order(save(plain, metadata=dict(about))))
         beside.replace(path)
     except OSError as error:
         raise BaselineError(
             f"{path}: {error.strerror or error}; choose a place that can be written"
         ) from error
+
+
+def _in_order(stored: bytes) -> bytes:
+    """The same file with its header sorted: the library writes metadata in an order that changes from run to
+    run."""
+    length = int.from_bytes(stored[:8], "little")
+    header = json.dumps(json.loads(stored[8 : 8 + length]), sort_keys=True, separators=(",", ":")).encode()
+    header += b" " * (-len(header) % 8)
+    return len(header).to_bytes(8, "little") + header + stored[8 + length :]
 
 
 def load_weights(path: Path) -> MotionVelocimeter:

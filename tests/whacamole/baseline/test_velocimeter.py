@@ -65,6 +65,17 @@ def test_weights_come_back_as_they_were(tmp_path: Path) -> None:
     assert trained_on(found) == {"walk"}
 
 
+def test_the_same_weights_are_the_same_bytes(tmp_path: Path) -> None:
+    weights, path = random_weights(), tmp_path / "w.safetensors"
+    about = {f"key {number}": str(number) for number in range(8)}
+    found = set()
+    for _ in range(4):
+        save_weights(path, weights, about)
+        found.add(path.read_bytes())
+    assert len(found) == 1
+    assert load_weights(path).about == about
+
+
 @pytest.mark.parametrize("content", [b"", b"not weights", b"\xff" * 64])
 def test_a_damaged_file_is_one_line(tmp_path: Path, content: bytes) -> None:
     path = tmp_path / "w.safetensors"
