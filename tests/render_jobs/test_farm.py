@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import threading
 from collections import Counter
 from collections.abc import Iterator
@@ -13,6 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from render_jobs import EngineError, RenderJobError, WorkerError
+from render_jobs.errors import PostponedError
 from render_jobs.farm import Outcome, run_farm
 
 LOG = Path("render.log")
@@ -81,6 +83,42 @@ def test_a_task_that_always_crashes_holds_up_nothing() -> None:
     with ThreadPoolExecutor(1) as pool:
         order = [outcome.task for outcome in run_farm(pool, work, ["bad", "a", "b", "c"], in_flight=1)]
     assert order == ["bad", "a", "b", "c", "bad", "bad"]
+
+
+def test_what_cannot_be_done_now_costs_no_attempt_and_holds_up_nothing() -> None:
+    asked: Counter[str] = Counter()
+
+    def work(task: str) -> str:
+        asked[task] += 1
+        if task == "taken" and asked[task] <= 5:
+            raise PostponedError("somebody else makes it")
+        return task
+
+    with ThreadPoolExecutor(1) as pool:
+        outcomes = list(run_farm(pool, work, ["taken", "a", "b"], in_flight=1, attempts=2, pause=0.01))
+    assert [outcome.task for outcome in outcomes if outcome.error is None] == ["a", "b", "taken"]
+    assert outcomes[-1].attempts == 1
+    assert asked["taken"] == 6
+
+
+def test_patience_ends() -> None:
+    def work(_: str) -> None:
+        raise PostponedError("the disk is full", patience=0.2)
+
+    with ThreadPoolExecutor(1) as pool:
+        *before, last = run_farm(pool, work, ["only"], in_flight=1, pause=0.05)
+    assert len(before) >= 2
+    assert not any(outcome.final for outcome in before)
+    assert last.final
+    assert str(last.error) == "the disk is full"
+
+
+def test_errors_travel_between_machines() -> None:
+    for error in (WorkerError("it crashed", LOG), PostponedError("full", 3.0), EngineError("no driver")):
+        back = pickle.loads(pickle.dumps(error))  # noqa: TID251
+        assert type(back) is type(error)
+        assert str(back) == str(error)
+        assert vars(back) == vars(error)
 
 
 def test_tasks_are_read_as_they_are_needed_and_stopping_stops() -> None:

@@ -6,6 +6,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
@@ -177,6 +178,7 @@ def watched(code: str, folder: Path, **limits: float) -> list[Event]:
         events.append,
         timeout=limits.get("timeout"),
         memory_limit_mb=limits.get("memory_limit_mb"),
+        time_limit=limits.get("time_limit"),
     )
     return [*events, {"end": describe_end(end)}]
 
@@ -190,6 +192,32 @@ def test_a_child_that_hangs_is_killed(tmp_path: Path) -> None:
 def test_a_child_that_takes_too_much_memory_is_killed(tmp_path: Path) -> None:
     with pytest.raises(WorkerError, match="over the limit of 200 MB"):
         watched("import time; x = bytearray(300_000_000); time.sleep(600)", tmp_path, memory_limit_mb=200)
+
+
+def test_a_child_that_is_never_silent_has_a_time_limit(tmp_path: Path) -> None:
+    chatter = "import time\nwhile True: print('{}', flush=True); time.sleep(0.05)"
+    with pytest.raises(WorkerError, match="it took longer than the limit of 1 s"):
+        watched(chatter, tmp_path, timeout=30.0, time_limit=1.0)
+
+
+def test_a_child_ends_when_its_run_does(tmp_path: Path) -> None:
+    stop = threading.Event()
+    threading.Timer(0.3, stop.set).start()
+    with pytest.raises(WorkerError, match="it was stopped"):
+        watch_child(
+            [sys.executable, "-c", "import time; time.sleep(600)"],
+            tmp_path / "log", print, timeout=None, memory_limit_mb=None, stop=stop,
+        )  # fmt: skip
+
+
+def test_a_child_gets_variables_of_its_own(tmp_path: Path) -> None:
+    events: list[Event] = []
+    code = "import json, os; print(json.dumps({'gpu': os.environ['CUDA_VISIBLE_DEVICES']}))"
+    watch_child(
+        [sys.executable, "-c", code], tmp_path / "log", events.append,
+        timeout=60, memory_limit_mb=None, environment={"CUDA_VISIBLE_DEVICES": "3"},
+    )  # fmt: skip
+    assert events == [{"gpu": "3"}]
 
 
 def test_a_child_that_aborts_says_how_and_leaves_its_log(tmp_path: Path) -> None:
