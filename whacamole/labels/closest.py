@@ -1,16 +1,19 @@
 """Closest points on triangles, and on which side of a closed skin a point lies."""
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.spatial import cKDTree
 
-from whacamole.labels.arrays import Float64s, Indices, ranges
+from whacamole.labels.arrays import Float64s, Indices, dots, ranges, rows
 from whacamole.labels.mesh import face_normals
 from whacamole.labels.patches import PosedSkin
 
 _TIE = 1e-9  # metres within which triangles count as equally near: they share the closest edge or corner
-_FIRST_SAMPLES = 4
+_FIRST_SAMPLES = 8
+_SPLIT_SQUARE = (
+    0.025**2
+)  # squared metres: triangles with a longer side are also sampled at the middles of their sides
 _AT = 1e-9  # barycentric weight below which the closest point counts as on an edge
 
 
@@ -30,22 +33,16 @@ class Closest:
     corner: Indices
 
 
-@dataclass(frozen=True, eq=False)
-class _Pairs:
-    """M queries against triangles: squared distance [m²], and barycentric weights ``(M, 3)`` of the foot."""
-
-    query: Indices
-    triangle: Indices
-    square: Float64s
-    weight: Float64s
+_Pairs = tuple[Indices, Indices, Float64s, Float64s]
+"""M queries, M triangles, their squared distances [m²], barycentric weights ``(M, 3)`` of the foot."""
 
 
 class SkinSearch:
     """Exact signed distance to part of a skin.
 
-    The search goes by samples, the corners and the middles of the edges. Cut every triangle at the middles of
-    its sides into four, with edges of at most e; let q be the point of the skin closest to p, and x the
-    corner nearest to q of the small triangle that holds q. Then |q - x|² <= e²/3, and |p - x|² <= |p - q|² +
+    The search goes by samples: the corners, and the middles of the sides of long triangles, which these cut
+    into four. Let a triangle, cut or not, have sides of at most e; let q be the point of the skin closest to
+    p, in that triangle, and x its corner nearest to q. Then |q - x|² <= e²/3, and |p - x|² <= |p - q|² +
     e²/3: inside the triangle p - q stands at right angles to it, on an edge at right angles to the edge, and
     at a corner x is q. So the smallest |p - x|² - e²/3 over all samples bounds |p - q|² from below, and the
     closest triangle is around one of the samples where it is at most |p - q|². With a fourth coordinate
@@ -61,19 +58,25 @@ class SkinSearch:
         count = len(skin.points)
         flag = np.zeros(count, dtype=np.bool_)
         flag[among] = True
-        a, b, c = skin.map.corner
-        triangles = np.flatnonzero(flag[a] | flag[b] | flag[c])
+        triangles = np.flatnonzero(flag.take(skin.map.corner).any(axis=0))
         corners = skin.map.corner.take(triangles, axis=1)
         sides = skin.map.triangle_edge.take(triangles, axis=1)
-        longest = np.maximum.reduce(skin.edge_lengths(sides))
+        longest = skin.longest_side(corners)
+        split = longest > _SPLIT_SQUARE
         slack = np.full(count + skin.map.edge.shape[1], -1.0)
-        for column in (*corners, *(count + sides)):
-            np.maximum.at(slack, column, longest * longest / 12)
+        bound = np.where(split, longest / 12, longest / 3)
+        for column in corners:
+            np.maximum.at(slack, column, bound)
+        halves = count + sides[:, split]
+        bound = bound[split]
+        for column in halves:
+            np.maximum.at(slack, column, bound)
         self._sample = np.flatnonzero(slack >= 0)
         slack = slack[self._sample]
         whole, halved = np.split(self._sample, [np.searchsorted(self._sample, count)])
-        start, end = skin.map.edge[:, halved - count]
-        self._places = np.concatenate([self._points[whole], (self._points[start] + self._points[end]) / 2])
+        start, end = skin.map.edge.take(halved - count, axis=1)
+        middles = (rows(self._points, start) + rows(self._points, end)) / 2
+        self._places = np.concatenate([rows(self._points, whole), middles])
         self._largest = float(slack.max())
         lifted = np.column_stack([self._places, np.sqrt(self._largest - slack)])
         self._tree = cKDTree(lifted, leafsize=32, balanced_tree=False, compact_nodes=False)
@@ -87,8 +90,8 @@ class SkinSearch:
         low = np.minimum(np.sqrt(np.maximum(power[:, 0], 0.0)), within)
         high = np.full(len(queries), np.inf)
         found = np.flatnonzero(np.isfinite(power[:, 0]))
-        step = queries[found] - self._places[sample[found, 0]]
-        high[found] = np.sqrt(_dot(step, step))
+        step = rows(queries, found) - rows(self._places, sample[found, 0])
+        high[found] = np.sqrt(dots(step, step))
         return low, high
 
     def closest(self, queries: Float64s, within: float = np.inf) -> Closest:
@@ -97,20 +100,20 @@ class SkinSearch:
         ``within`` is a bound of the unsigned distances, if one is known; it saves time.
         """
         limit = float(np.sqrt(within * within + self._largest)) + _TIE
-        pairs = self._candidates(queries, limit, _FIRST_SAMPLES)
+        query, triangle, square, weight = self._candidates(queries, limit, _FIRST_SAMPLES)
         best = np.full(len(queries), np.inf)
-        np.minimum.at(best, pairs.query, pairs.square)
-        tied = np.flatnonzero(np.sqrt(pairs.square) <= np.sqrt(best)[pairs.query] + _TIE)
+        np.minimum.at(best, query, square)
+        tied = np.flatnonzero(square <= ((np.sqrt(best) + _TIE) ** 2)[query])
         # A triangle met at two of its samples must count once.
-        key = pairs.query[tied] * len(self._map.faces) + pairs.triangle[tied]
+        key = query[tied] * len(self._map.faces) + triangle[tied]
         tied = tied[np.unique(key, return_index=True)[1]]
-        row, triangle, weight = pairs.query[tied], pairs.triangle[tied], pairs.weight[tied]
-        corners = self._points[self._map.faces[triangle]]
-        offset = queries[row] - (weight[..., None] * corners).sum(axis=1)
+        row, triangle, weight = query[tied], triangle[tied], weight[tied]
+        corners = rows(self._points, rows(self._map.faces, triangle))
+        offset = rows(queries, row) - np.einsum("ij,ijk->ik", weight, corners)
         begin = np.flatnonzero(np.diff(row, prepend=-1))
-        turn = _feature_angle(corners, weight) * _dot(_unit_normals(corners), offset)
+        turn = _feature_angle(corners, weight) * dots(_unit_normals(corners), offset)
         side = np.add.reduceat(turn, begin)
-        distance = np.linalg.norm(offset[begin], axis=1)
+        distance = np.sqrt(dots(offset[begin], offset[begin]))
         corner = self._map.faces[triangle[begin], weight[begin].argmax(axis=1)]
         return Closest(np.where(side < 0, -distance, distance), corner)
 
@@ -126,24 +129,26 @@ class SkinSearch:
         """Pairs in which each query meets its closest triangle, all of them if several tie."""
         count = min(count, len(self._sample))
         power, sample = self._nearest(queries, count, limit)
-        found = [self._pairs(queries, np.arange(len(queries)), sample[:, 0])]
-        best = np.minimum.reduceat(found[0].square, np.flatnonzero(np.diff(found[0].query, prepend=-1)))
+        first = self._pairs(queries, np.arange(len(queries)), sample[:, 0])
+        best = np.minimum.reduceat(first[2], np.flatnonzero(np.diff(first[0], prepend=-1)))
         reach = (np.sqrt(best) + _TIE) ** 2
         query, slot = np.nonzero(power[:, 1:] <= reach[:, None])
-        found.append(self._pairs(queries, query, sample[query, slot + 1]))
+        found = [first, self._pairs(queries, query, sample[query, slot + 1])]
         unsure = np.flatnonzero(power[:, -1] <= reach)
         if len(unsure) and count < len(self._sample):
-            more = self._candidates(queries[unsure], limit, 4 * count)
-            found.append(replace(more, query=unsure[more.query]))
-        return _Pairs(*(np.concatenate([getattr(part, f.name) for part in found]) for f in fields(_Pairs)))
+            query, triangle, square, weight = self._candidates(queries[unsure], limit, 4 * count)
+            found.append((unsure[query], triangle, square, weight))
+        query, triangle, square, weight = (np.concatenate(column) for column in zip(*found, strict=True))
+        return query, triangle, square, weight
 
     def _pairs(self, queries: Float64s, query: Indices, sample: Indices) -> _Pairs:
         """Queries against the triangles around samples, one sample a row."""
-        start = self._map.owner_start[self._sample[sample]]
-        which, offset = ranges(self._map.owner_start[self._sample[sample] + 1] - start)
-        triangle = self._map.owner[start[which] + offset]
-        corners = self._points[self._map.faces[triangle]]
-        return _Pairs(query[which], triangle, *_square_distance(queries[query[which]], corners))
+        sample = self._sample[sample]
+        start = self._map.owner_start[sample]
+        which, offset = ranges(self._map.owner_start[sample + 1] - start)
+        triangle, query = self._map.owner[start[which] + offset], query[which]
+        corners = rows(self._points, rows(self._map.faces, triangle))
+        return query, triangle, *_square_distance(rows(queries, query), corners)
 
 
 def _square_distance(points: Float64s, corners: Float64s) -> tuple[Float64s, Float64s]:
@@ -154,8 +159,8 @@ def _square_distance(points: Float64s, corners: Float64s) -> tuple[Float64s, Flo
     """
     ab, ac = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     ap = points - corners[:, 0]
-    bb, bc, cc = _dot(ab, ab), _dot(ab, ac), _dot(ac, ac)
-    pb, pc, pp = _dot(ap, ab), _dot(ap, ac), _dot(ap, ap)
+    bb, bc, cc = dots(ab, ab), dots(ab, ac), dots(ac, ac)
+    pb, pc, pp = dots(ap, ab), dots(ap, ac), dots(ap, ap)
     with np.errstate(divide="ignore", invalid="ignore"):
         scale = 1.0 / (bb * cc - bc * bc)
         v, w = (cc * pb - bc * pc) * scale, (bb * pc - bc * pb) * scale
@@ -189,7 +194,7 @@ def _feature_angle(corners: Float64s, weight: Float64s) -> Float64s:
         row = np.arange(len(at_corner))
         a = triangle[row, (here + 1) % 3] - triangle[row, here]
         b = triangle[row, (here + 2) % 3] - triangle[row, here]
-        angle[at_corner] = np.arctan2(np.linalg.norm(np.cross(a, b), axis=1), _dot(a, b))
+        angle[at_corner] = np.arctan2(np.linalg.norm(np.cross(a, b), axis=1), dots(a, b))
     return angle
 
 
@@ -197,8 +202,3 @@ def _unit_normals(corners: Float64s) -> Float64s:
     normals = face_normals(corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3))
     length = np.linalg.norm(normals, axis=1, keepdims=True)
     return np.divide(normals, length, out=np.zeros_like(normals), where=length > 0)
-
-
-def _dot(a: Float64s, b: Float64s) -> Float64s:
-    product: Float64s = np.einsum("ij,ij->i", a, b)
-    return product

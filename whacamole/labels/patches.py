@@ -1,4 +1,4 @@
-"""A closed skin cut into patches, coarse and fine, so that most of two bodies need never be compared."""
+"""A closed skin cut into patches, so that most of two bodies need never be compared."""
 
 from dataclasses import dataclass
 from itertools import pairwise
@@ -6,11 +6,11 @@ from typing import Self
 
 import numpy as np
 
-from whacamole.labels.arrays import Float64s, Floats, Indices, ranges
+from whacamole.labels.arrays import Float64s, Floats, Indices, dots, ranges, rows
 from whacamole.labels.parts import BodyParts
 from whacamole.labels.skin import OuterSkin
 
-_COARSE, _FINE = 64, 12  # points a patch, at most
+_PATCH, _PATCH_SIDE = 64, 0.15  # points a patch, and the longest side of its box at rest [m], at most
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,6 +25,8 @@ class Patches:
         cover: points of all triangles with a corner in a patch, patch by patch.
         cover_start: ``(m + 1,)`` where each patch's begin in ``cover``.
         links: ``(2, L)`` pairs of patches with an edge between them.
+        faces: ``(F,)`` every triangle once, patch by patch.
+        face_start: ``(m + 1,)`` where each patch's begin in ``faces``.
     """
 
     start: Indices
@@ -34,6 +36,8 @@ class Patches:
     cover: Indices
     cover_start: Indices
     links: Indices
+    faces: Indices
+    face_start: Indices
 
     @classmethod
     def build(cls, sizes: Indices, points: Float64s, part: Indices, faces: Indices) -> Self:
@@ -52,16 +56,15 @@ class Patches:
             cover=cover,
             cover_start=np.searchsorted(owner, np.arange(len(sizes) + 1)),
             links=np.stack([neighbours // len(sizes), neighbours % len(sizes)]),
+            faces=np.argsort(patch[faces[:, 0]], kind="stable"),
+            face_start=np.searchsorted(np.sort(patch[faces[:, 0]]), np.arange(len(sizes) + 1)),
         )
 
-    def balls(self, points: Float64s, which: Indices) -> tuple[Float64s, Float64s]:
-        """Centres ``(k, 3)`` and radii ``(k,)`` of balls round all triangles with a corner in a patch."""
-        count = self.cover_start[which + 1] - self.cover_start[which]
-        owner, offset = ranges(count)
-        centre = points[self.centre[which]]
-        step = points[self.cover[self.cover_start[which][owner] + offset]] - centre[owner]
-        square = np.einsum("ij,ij->i", step, step)
-        return centre, np.sqrt(np.maximum.reduceat(square, np.cumsum(count) - count))
+    def balls(self, points: Float64s) -> tuple[Float64s, Float64s]:
+        """Centres ``(m, 3)`` and radii ``(m,)`` of balls round all triangles with a corner in a patch."""
+        centre = rows(points, self.centre)
+        step = rows(points, self.cover) - np.repeat(centre, np.diff(self.cover_start), axis=0)
+        return centre, np.sqrt(np.maximum.reduceat(dots(step, step), self.cover_start[:-1]))
 
     def points(self, which: Indices) -> Indices:
         """All points of some patches."""
@@ -85,9 +88,7 @@ class SkinMap:
         owner: triangles around every sample, one sample after the other; the n + E samples are the points,
             then the middles of the edges.
         owner_start: ``(n + E + 1,)`` where each sample's triangles begin in ``owner``.
-        coarse: patches of at most 64 points.
-        fine: those cut into patches of at most 12.
-        coarse_of: ``(m,)`` the coarse patch that holds each fine one.
+        patches: of at most 64 points and 15 cm.
     """
 
     ids: Indices
@@ -98,9 +99,7 @@ class SkinMap:
     triangle_edge: Indices
     owner: Indices
     owner_start: Indices
-    coarse: Patches
-    fine: Patches
-    coarse_of: Indices
+    patches: Patches
 
     @classmethod
     def build(cls, skin: OuterSkin, parts: BodyParts, rest_vertices: Floats) -> Self:
@@ -110,19 +109,15 @@ class SkinMap:
         lids = [np.bincount(parts.vertex_part[rim] + 1).argmax() - 1 for rim in skin.rims]
         part = np.concatenate([parts.vertex_part, lids]).astype(np.intp)
         used = np.unique(skin.faces)
-        coarse = [
-            piece
-            for name in np.unique(part[used])
-            for piece in _bisect(used[part[used] == name], points, _COARSE)
+        pieces = [
+            piece for name in np.unique(part[used]) for piece in _bisect(used[part[used] == name], points)
         ]
-        fine = [_bisect(piece, points, _FINE) for piece in coarse]
-        ids = np.concatenate([piece for pieces in fine for piece in pieces])
+        ids = np.concatenate(pieces)
         renumber = np.full(len(points), -1, dtype=np.intp)
         renumber[ids] = np.arange(len(ids))
         faces, points, part = renumber[skin.faces], points[ids], part[ids]
         edge, triangle_edge = _edges(faces, len(ids))
         owner, owner_start = _owners(faces, triangle_edge.T, len(ids), edge.shape[1])
-        fine_sizes = np.array([len(piece) for pieces in fine for piece in pieces])
         return cls(
             ids=ids,
             part=part,
@@ -132,9 +127,7 @@ class SkinMap:
             triangle_edge=triangle_edge,
             owner=owner,
             owner_start=owner_start,
-            coarse=Patches.build(np.array([len(piece) for piece in coarse]), points, part, faces),
-            fine=Patches.build(fine_sizes, points, part, faces),
-            coarse_of=np.repeat(np.arange(len(fine)), [len(pieces) for pieces in fine]),
+            patches=Patches.build(np.array([len(piece) for piece in pieces]), points, part, faces),
         )
 
 
@@ -148,7 +141,7 @@ class PosedSkin:
     Attributes:
         map: ``skin_map``.
         points: ``(n, 3)`` in the order of the map [m].
-        centre: ``(m, 3)`` centres of the balls round the coarse patches, themselves points of the skin.
+        centre: ``(m, 3)`` centres of the balls round the patches, themselves points of the skin.
         radius: ``(m,)`` their radii; see :meth:`Patches.balls`.
         low: ``(3,)`` corner of the box around all points.
         high: ``(3,)`` the opposite corner.
@@ -156,29 +149,40 @@ class PosedSkin:
 
     def __init__(self, skin_map: SkinMap, closed: Float64s) -> None:
         self.map = skin_map
-        self.points = closed[skin_map.ids]
-        coarse = skin_map.coarse
-        self.centre, self.radius = coarse.balls(self.points, np.arange(len(coarse.centre)))
+        self.points = rows(closed, skin_map.ids)
+        self.centre, self.radius = skin_map.patches.balls(self.points)
         # Reductions along the rows are many times faster in NumPy than down the columns.
-        by_axis = np.ascontiguousarray(self.points.T)
-        self.low, self.high = by_axis.min(axis=1), by_axis.max(axis=1)
+        self._by_axis = np.ascontiguousarray(self.points.T)
+        self.low, self.high = self._by_axis.min(axis=1), self._by_axis.max(axis=1)
+
+    def longest_side(self, corners: Indices) -> Float64s:
+        """The longest side of each triangle ``(3, F)``, squared [m²]."""
+        sides = np.zeros((3, corners.shape[1]))
+        for axis in self._by_axis:
+            at = axis.take(corners)
+            for side, (start, end) in zip(sides, ((0, 1), (1, 2), (2, 0)), strict=True):
+                step = at[end] - at[start]
+                side += step * step
+        longest: Float64s = sides.max(axis=0)
+        return longest
 
     def edge_lengths(self, edges: Indices) -> Float64s:
-        """Lengths of some edges [m], any shape of index."""
-        start, end = self.map.edge
-        step = self.points[start[edges]] - self.points[end[edges]]
-        lengths: Float64s = np.sqrt(np.einsum("...j,...j->...", step, step))
+        """Lengths of edges ``(N,)`` [m]."""
+        start, end = self.map.edge.take(edges, axis=1)
+        step = rows(self.points, start) - rows(self.points, end)
+        lengths: Float64s = np.sqrt(dots(step, step))
         return lengths
 
 
-def _bisect(ids: Indices, points: Float64s, limit: int) -> list[Indices]:
-    """Halve a set of points across its longest side until no piece holds more than ``limit``."""
-    if len(ids) <= limit:
+def _bisect(ids: Indices, points: Float64s) -> list[Indices]:
+    """Halve a set of points across its longest side until every piece is small."""
+    sides = np.ptp(points[ids], axis=0)
+    if len(ids) <= _PATCH and (sides.max() <= _PATCH_SIDE or len(ids) == 1):
         return [ids]
-    axis = np.ptp(points[ids], axis=0).argmax()
+    axis = sides.argmax()
     order = ids[np.argsort(points[ids, axis], kind="stable")]
     half = len(order) // 2
-    return [*_bisect(order[:half], points, limit), *_bisect(order[half:], points, limit)]
+    return [*_bisect(order[:half], points), *_bisect(order[half:], points)]
 
 
 def _most_central(points: Float64s) -> int:

@@ -11,15 +11,18 @@ from scipy.spatial.distance import cdist
 
 from whacamole.labels.arrays import Bools, Float64s, Indices
 from whacamole.labels.closest import SkinSearch
-from whacamole.labels.flood import flood
+from whacamole.labels.flood import flood, one_of_each
 from whacamole.labels.patches import PosedSkin, SkinMap
+from whacamole.labels.winding import inside
 
 EXACT_WITHIN = 0.05
 """Gaps up to this are exact [m]; longer ones are measured between some vertices and may be too long."""
 
 _ROWS_AT_ONCE = 1024
 
-_LONG_EDGE = 0.05  # metres; bounds longer than any edge would tie no more points together
+_TIE_WITHIN = (
+    0.03  # metres from which B is searched whatever the need, so that most of A's edges are seen clear
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,82 +82,41 @@ def _box_gap(a: PosedSkin, b: PosedSkin) -> float:
 
 def _sampled_gaps(a: PosedSkin, b: PosedSkin, between: Float64s, num_parts: int) -> Float64s:
     """``(C,)`` upper bounds of the gaps, over all points of the two patches with the nearest centres."""
-    coarse = a.map.coarse
+    patches = a.map.patches
     nearest = between.argmin(axis=1)
-    order = np.lexsort((between[np.arange(len(between)), nearest], coarse.part))
-    parts, first = np.unique(coarse.part[order], return_index=True)
+    order = np.lexsort((between[np.arange(len(between)), nearest], patches.part))
+    parts, first = np.unique(patches.part[order], return_index=True)
     gaps = np.full(num_parts, np.inf)
     for part, mine in zip(parts, order[first], strict=True):
         if part >= 0:
             theirs = nearest[mine]
-            own = a.points[coarse.start[mine] : coarse.start[mine + 1]]
-            gaps[part] = cdist(own, b.points[coarse.start[theirs] : coarse.start[theirs + 1]]).min()
+            own = a.points[patches.start[mine] : patches.start[mine + 1]]
+            gaps[part] = cdist(own, b.points[patches.start[theirs] : patches.start[theirs + 1]]).min()
     return gaps
-
-
-@dataclass(frozen=True, eq=False)
-class _Near:
-    """The fine patches of A that may decide anything, and those of B they must be held against.
-
-    Attributes:
-        mine: fine patches of A.
-        theirs: fine patches of B.
-        clear: for each of ``mine``, no other patch of B is nearer than this [m].
-    """
-
-    mine: Indices
-    theirs: Indices
-    clear: Float64s
-
-
-def _near_patches(a: PosedSkin, b: PosedSkin, apart: Float64s, need: Float64s) -> _Near:
-    """The fine patches of A whose balls come within ``need`` of B's, and those of B that matter to them.
-
-    Those of B are taken from as far as the longest edge: bounds shorter than an edge would tie no points
-    together.
-
-    Args:
-        a: the one whose patches decide how far is near.
-        b: the other.
-        apart: ``(m, m)`` distance between the balls round coarse patches [m].
-        need: ``(m,)`` for each coarse patch of A [m].
-    """
-    mine = (apart <= need[:, None]).any(axis=1)
-    wide = np.maximum(need, _LONG_EDGE)
-    theirs = (apart[mine] <= wide[mine, None]).any(axis=0)
-    coarse_of = a.map.coarse_of
-    fine_a, fine_b = np.flatnonzero(mine[coarse_of]), np.flatnonzero(theirs[coarse_of])
-    if not len(fine_a):
-        return _Near(fine_a, fine_b, np.zeros(0))
-    beyond = np.where(theirs, np.inf, apart).min(axis=1)[coarse_of[fine_a]]
-    centre_a, radius_a = a.map.fine.balls(a.points, fine_a)
-    centre_b, radius_b = b.map.fine.balls(b.points, fine_b)
-    apart = np.maximum(cdist(centre_a, centre_b) - radius_a[:, None] - radius_b, 0.0)
-    mine = (apart <= need[coarse_of[fine_a], None]).any(axis=1)
-    theirs = (apart[mine] <= wide[coarse_of[fine_a[mine]], None]).any(axis=0)
-    clear = np.minimum(beyond, np.where(theirs, np.inf, apart).min(axis=1))
-    return _Near(fine_a[mine], fine_b[theirs], clear[mine])
 
 
 def _one_way(a: PosedSkin, b: PosedSkin, apart: Float64s, gap: Float64s, threshold: float) -> _Side:
     """Exact signed distances of all points of A that touch B, lie in B, or decide the gap of their part."""
-    skin_map = a.map
-    need = np.maximum(np.minimum(np.append(gap, np.inf), EXACT_WITHIN), threshold)
-    near = _near_patches(a, b, apart, need[skin_map.coarse.part])
-    if not len(near.mine):
+    skin_map, patches = a.map, a.map.patches
+    need = np.maximum(np.minimum(np.append(gap, -np.inf), EXACT_WITHIN), threshold)
+    near = apart <= need[patches.part, None]
+    mine = np.flatnonzero(near.any(axis=1))
+    if not len(mine):
         return _far_or_enclosed(a, b, gap)
-    points = skin_map.fine.points(near.mine)
-    search = SkinSearch(b, skin_map.fine.points(near.theirs))
-    lower, upper = search.bounds(a.points[points], max(float(need.max()), _LONG_EDGE))
-    clear = np.zeros(len(skin_map.fine.centre))
-    clear[near.mine] = near.clear
-    clear = clear[skin_map.fine.patch[points]]
-    sides = flood(a, b, points, np.minimum(lower, clear), near.mine)
+    # The others of B are farther than ``within`` from all of these, and from each as far as ``clear``.
+    within = max(float(need.max()), _TIE_WITHIN)
+    theirs = (apart[mine] <= np.maximum(need[patches.part[mine], None], _TIE_WITHIN)).any(axis=0)
+    points = patches.points(mine)
+    clear = np.where(theirs, np.inf, apart[mine]).min(axis=1)
+    clear = np.repeat(clear, np.diff(patches.start)[mine])
+    search = SkinSearch(b, patches.points(np.flatnonzero(theirs)))
+    lower, upper = search.bounds(a.points[points], 1.001 * within)
+    sides = flood(a, b, points, np.minimum(lower, clear), mine)
     part = skin_map.part[points]
-    best = np.append(gap, -np.inf)
+    best = need.copy()
     counted = sides.free & (part >= 0)
     np.minimum.at(best, part[counted], upper[counted])
-    ask = np.flatnonzero(~sides.free | (lower <= np.maximum(np.minimum(best[part], EXACT_WITHIN), threshold)))
+    ask = np.flatnonzero(~sides.free | (lower <= np.maximum(best[part], threshold)))
     found = search.closest(a.points[points[ask]], float(upper[ask].max(initial=0.0)))
     # Where the patches of B left out may be nearer than what was found, all of B must be searched.
     again = np.flatnonzero(~sides.free[ask] & (np.abs(found.distance) > clear[ask]))
@@ -166,17 +128,35 @@ def _one_way(a: PosedSkin, b: PosedSkin, apart: Float64s, gap: Float64s, thresho
         more = _search_around(b, a.points[chosen[open_]]).closest(a.points[chosen[open_]])
         distance[open_], corner[open_] = more.distance, more.corner
     group = np.append(np.where(sides.free[ask], -1, sides.group[ask]), sides.deep_group)
-    return _Side(chosen, _agree(distance, group), corner, gap)
+    parts = skin_map.part[chosen], skin_map.part[corner]
+    agreed = _agree(distance, group)
+    doubtful = _doubtful(agreed, group, parts, len(gap), threshold)
+    doubtful = doubtful[inside(a.points[chosen[doubtful]], b)]
+    agreed[np.isin(group, group[doubtful])] *= -1
+    return _Side(chosen, agreed, corner, gap)
 
 
 def _agree(distance: Float64s, group: Indices) -> Float64s:
-    """Signed distances with one sign a group; group -1 is outside.
+    """Signed distances with one sign a group; group -1 is outside."""
+    within = np.isin(group, np.unique(group[(distance < 0) & (group >= 0)]))
+    return np.where(within, -np.abs(distance), np.abs(distance))
+
+
+def _doubtful(
+    distance: Float64s, group: Indices, parts: tuple[Indices, Indices], num_parts: int, threshold: float
+) -> Indices:
+    """One point of each group that seems to be outside, where it makes a difference.
 
     Where B's skin crosses itself, a point inside may be nearest to a sheet that lies inside too, and the sign
-    by normals then says outside. It never errs the other way: behind any sheet is inside.
+    by normals then says outside. (It never errs the other way: behind any sheet is inside.) That matters if
+    the point does not touch, or would be the deepest of its part or of the part of B it is closest to.
     """
-    inside = np.isin(group, np.unique(group[(distance < 0) & (group >= 0)]))
-    return np.where(inside, -np.abs(distance), np.abs(distance))
+    matters = distance > threshold
+    for part in parts:
+        deepest = np.full(num_parts + 1, np.inf)
+        np.minimum.at(deepest, part, distance)
+        matters |= -distance < deepest[part]
+    return one_of_each(group, matters & (distance >= 0) & (group >= 0))
 
 
 def _far_or_enclosed(a: PosedSkin, b: PosedSkin, gap: Float64s) -> _Side:
@@ -194,13 +174,11 @@ def _search_around(skin: PosedSkin, points: Float64s) -> SkinSearch:
     A patch's centre is a point of the skin, so the nearest centre bounds the distance; a patch whose ball is
     farther than that cannot hold the closest point.
     """
-    every = np.arange(len(skin.map.fine.centre))
-    centre, radius = skin.map.fine.balls(skin.points, every)
-    among = np.zeros(len(every), dtype=np.bool_)
+    among = np.zeros(len(skin.centre), dtype=np.bool_)
     for start in range(0, len(points), _ROWS_AT_ONCE):
-        far = cdist(points[start : start + _ROWS_AT_ONCE], centre)
-        among |= (far - radius <= far.min(axis=1, keepdims=True)).any(axis=0)
-    return SkinSearch(skin, skin.map.fine.points(every[among]))
+        far = cdist(points[start : start + _ROWS_AT_ONCE], skin.centre)
+        among |= (far - skin.radius <= far.min(axis=1, keepdims=True)).any(axis=0)
+    return SkinSearch(skin, skin.map.patches.points(np.flatnonzero(among)))
 
 
 def _join(own: _Side, other: _Side, skin_map: SkinMap, threshold: float) -> Touch:

@@ -11,11 +11,14 @@ from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
+from whacamole.body import BodyParams
 from whacamole.labels import BodyParts, model_parts
 from whacamole.labels.closest import SkinSearch
 from whacamole.labels.patches import PosedSkin, SkinMap
 from whacamole.labels.skin import OuterSkin
 from whacamole.labels.touch import EXACT_WITHIN, Touch, touch
+from whacamole.labels.winding import inside
+from whacamole.motion import embedded_motions, read_motion
 
 THRESHOLD = 0.01
 
@@ -244,3 +247,46 @@ def test_a_person_wholly_inside_another(ball):
     # The outer one touches too, through the points that lie in it, though none of its vertices does.
     assert not large.points.any()
     np.testing.assert_allclose(large.distance, -0.6, atol=5e-3)
+
+
+def crawling(model, frame: int) -> np.ndarray:
+    person = read_motion(embedded_motions() / "crawl.npz").people[0]
+    rest = BodyParams.zeros(1)
+    fields = {name: np.array(getattr(rest, name)) for name in BodyParams.__dataclass_fields__}
+    for name in ("global_orient", "body_pose"):
+        fields[name] = getattr(person, name)[frame].reshape(fields[name].shape)
+    fields["transl"] = person.pelvis[frame, None] - model.rest_joints(np.zeros(10))[0]
+    return model.pose(BodyParams(**fields)).vertices[0].astype(np.float64)
+
+
+def test_no_vertex_inside_is_missed_where_a_skin_crosses_itself(human, model):
+    """Crouching skins cross themselves at hips and armpits, and normals then tell the wrong side."""
+    a, b = crawling(model, 10), crawling(model, 35) + np.array([0, 0, 0.28])
+    own, other = human.posed(a), human.posed(b)
+    side = touch(own, other, len(human.parts.names), THRESHOLD)[0]
+    near = cKDTree(other.points).query(own.points, distance_upper_bound=0.08)[0] < 0.08
+    left = np.flatnonzero(near & ~side.points)
+    assert len(left) > 1000
+    assert not inside(own.points[left], other).any()
+    some = left[:: len(left) // 40]
+    assert (winding_numbers(own.points[some], other.points[human.map.faces]) < 0.5).all()
+    deep = np.flatnonzero(side.points)[::30]
+    far = signed_distances(own.points[deep], other.points[human.map.faces])
+    assert (far <= THRESHOLD).all()
+    for part in np.unique(human.map.part[deep]):
+        assert side.distance[part] <= far[human.map.part[deep] == part].min() + 1e-9
+
+
+@given(seed=st.integers(0, 2**32 - 1))
+@settings(max_examples=10, deadline=None, derandomize=True)
+def test_inside_by_solid_angles(seed):
+    """A ball whose top is pushed anywhere: it crosses itself, with lobes counted twice or negative."""
+    rng = np.random.default_rng(seed)
+    ball = trimesh.creation.icosphere(subdivisions=2)
+    vertices, faces = np.asarray(ball.vertices), np.asarray(ball.faces)
+    toy = Toy(vertices, faces, one_part(vertices))
+    push = rng.normal(scale=0.8, size=3)
+    folded = vertices * rng.uniform(0.7, 1.3, 3) + np.outer(vertices[:, 2] > 0.3, push)
+    points = rng.uniform(-1.5, 1.5, size=(200, 3))
+    turns = winding_numbers(points, folded[faces])
+    np.testing.assert_array_equal(inside(points, toy.posed(folded)), turns > 0.5)
