@@ -22,7 +22,7 @@ _PEOPLE = (
 )  # fmt: skip
 _BETWEEN_PEOPLE = ("person_contact", "person_distance", "person_contact_part")
 _TIME_AXIS: dict[str, dict[str, int]] = {
-    "camera": dict.fromkeys(("K", "T_world_camera", "T_camera_world", "frame_index"), 0),
+    "camera": dict.fromkeys(("K", "T_world_camera", "T_camera_world", "focus_distance", "frame_index"), 0),
     "people": dict.fromkeys(_PEOPLE, 1),
     "contact": {
         **dict.fromkeys(("ground_contact", "ground_distance", "vertex_contact"), 1),
