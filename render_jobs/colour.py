@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,13 @@ def linear(colour: Colour) -> tuple[float, float, float]:
     """sRGB in 0..1 as linear light (IEC 61966-2-1)."""
     value = np.asarray(colour)
     curve = np.where(value <= 0.04045, value / 12.92, ((value + 0.055) / 1.055) ** 2.4)
+    return float(curve[0]), float(curve[1]), float(curve[2])
+
+
+def srgb(light: Sequence[float]) -> Colour:
+    """Linear light as sRGB in 0..1, clipped: the inverse of :func:`linear`."""
+    value = np.clip(np.asarray(light, float)[:3], 0.0, 1.0)
+    curve = np.where(value <= 0.0031308, value * 12.92, 1.055 * value ** (1 / 2.4) - 0.055).clip(0.0, 1.0)
     return float(curve[0]), float(curve[1]), float(curve[2])
 
 

@@ -88,13 +88,13 @@ def load_job(folder: Path) -> RenderJob:
     record = read_record(folder)
     try:
         _verify(folder, record.files)
-        meshes = tuple(_load_mesh(folder, mesh) for mesh in record.meshes)
+        meshes = tuple(read_mesh(folder, mesh) for mesh in record.meshes)
         camera, neighbours = _load_camera(folder, record)
         return RenderJob(
             camera=camera,
             meshes=meshes,
             lights=record.lights,
-            environment=_with_folder(record.environment, folder),
+            environment=with_folder(record.environment, folder),
             quality=record.quality,
             passes=record.passes,
             image_format=record.image_format,
@@ -129,7 +129,7 @@ def read_record(folder: Path) -> JobRecord:
 
 
 def _write(job: RenderJob, folder: Path) -> None:
-    meshes = tuple(_write_mesh(mesh, index, folder) for index, mesh in enumerate(job.meshes))
+    meshes = tuple(write_mesh(mesh, index, folder) for index, mesh in enumerate(job.meshes))
     environment = job.environment
     if environment.kind == "hdri" and isinstance(environment.hdri, Path):
         copied = _copy(environment.hdri, folder, HDRI_SUFFIXES)
@@ -159,7 +159,12 @@ def _write(job: RenderJob, folder: Path) -> None:
     (folder / JOB_FILE).write_text(text + "\n", encoding="utf-8")
 
 
-def _write_mesh(mesh: Mesh, index: int, folder: Path) -> MeshRecord:
+def write_mesh(mesh: Mesh, index: int, folder: Path) -> MeshRecord:
+    """Write a mesh's arrays and copies of its textures into the folder, as its number ``index``.
+
+    Raises:
+        RenderJobError: a texture cannot be copied.
+    """
     place = Path("meshes", f"{index:04d}")
     (folder / place).mkdir(parents=True)
     arrays = tuple(name for name in ARRAYS if getattr(mesh, name) is not None)
@@ -242,7 +247,12 @@ def _inside(folder: Path, name: str) -> Path:
     return folder / path
 
 
-def _load_mesh(folder: Path, record: MeshRecord) -> Mesh:
+def read_mesh(folder: Path, record: MeshRecord) -> Mesh:
+    """Read a mesh that :func:`write_mesh` wrote.
+
+    Raises:
+        RenderJobError: an array is missing or damaged, or a path leads out of the folder.
+    """
     arrays = {name: _load_array(folder, f"{record.folder}/{name}.npy") for name in record.arrays}
     if not {"vertices", "faces"} <= set(arrays):
         raise RenderJobError(
@@ -252,7 +262,7 @@ def _load_mesh(folder: Path, record: MeshRecord) -> Mesh:
         name=record.name,
         vertices=arrays["vertices"],
         faces=arrays["faces"],
-        material=_with_folder(record.material, folder),
+        material=with_folder(record.material, folder),
         uv=arrays.get("uv"),
         placements=arrays.get("placements"),
         track_id=record.track_id,
@@ -304,7 +314,7 @@ def _load_focus(folder: Path) -> NDArray[np.float64]:
         return np.asarray(file["focus_distance"], np.float64)
 
 
-def _with_folder(value: Value, folder: Path) -> Value:
+def with_folder(value: Value, folder: Path) -> Value:
     """The value with its relative file names made absolute."""
     files: dict[str, Path] = {}
     for key in ("base_color_texture", "normal_texture", "hdri"):
