@@ -5,6 +5,7 @@ A recipe comes from three places, each over the one before: the defaults below, 
 threads, devices), so the same recipe gives the same labels on any machine.
 """
 
+import os
 import textwrap
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self, get_args, get_origin
@@ -103,7 +104,15 @@ class Recipe(BaseModel):
     people: People = Field(
         (1, 1), description="fewest and most people in a scene of single motions; pairs stay as captured"
     )
-    stages: Names = Field((), description="stages to choose from; none: all of them")
+    stages: Names = Field(
+        (),
+        description="stages to choose from: names, files of your own (.blend, .glb, .gltf, .usd), folders of "
+        "them; none: all that come with whacamole",
+    )
+    hdris: Path | None = Field(
+        None,
+        description="folder of .exr and .hdr environment maps to light stages under a sky; none: built-in",
+    )
     shots_per_motion: int = Field(1, ge=1, le=10000, description="sequences made of each motion")
     limit: int | None = Field(None, ge=1, description="make at most so many sequences")
     frames: int = Field(
@@ -164,9 +173,13 @@ class Recipe(BaseModel):
             return self
         from whacamole.stage import STAGES  # late: it loads the geometry of all stages
 
-        unknown = sorted(set(self.stages) - set(STAGES))
-        if unknown:
-            raise ValueError(f"stages: {unknown[0]!r} is none of {', '.join(STAGES)}")
+        for entry in self.stages:
+            is_path = "/" in entry or os.sep in entry or Path(entry).suffix or Path(entry).exists()
+            if entry not in STAGES and not is_path:
+                raise ValueError(
+                    f"stages: {entry!r} is none of {', '.join(STAGES)}, and no file or folder of that name "
+                    "is here"
+                )
         return self
 
     @model_validator(mode="after")

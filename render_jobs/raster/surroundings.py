@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from render_jobs.colour import linear
 from render_jobs.errors import EngineError
-from render_jobs.images import read_exr
+from render_jobs.maps import read_map, solid_angles
 from render_jobs.scene import Environment
 
 Floats = NDArray[np.float32]
@@ -46,7 +46,7 @@ def surroundings_of(environment: Environment) -> Surroundings:
         EngineError: the environment map cannot be had.
     """
     image = _image(environment) * np.float32(environment.strength)
-    angle = _solid_angles(image.shape[0], image.shape[1])
+    angle = solid_angles(image.shape[0], image.shape[1])
     sun, rest = _take_sun(image, angle) if environment.kind == "hdri" else (None, image)
     half = image.shape[0] // 2
     above, below = (
@@ -63,7 +63,8 @@ def _image(environment: Environment) -> Floats:
         return np.broadcast_to(np.asarray(linear(environment.color), np.float32), (*SKY_SIZE, 3)).copy()
     if environment.kind == "sky":
         return _clear_sky(environment)
-    image = _read_map(environment.hdri)
+    hdri = environment.hdri
+    image = read_map(hdri if isinstance(hdri, Path) else _map_of_blender(hdri))
     shift = round(environment.rotation / 360.0 * image.shape[1])
     return np.roll(image, -shift, axis=1)
 
@@ -83,17 +84,6 @@ def _clear_sky(environment: Environment) -> Floats:
     return np.broadcast_to(rows[:, None], (*SKY_SIZE, 3)).astype(np.float32)
 
 
-def _read_map(hdri: str | Path) -> Floats:
-    path = hdri if isinstance(hdri, Path) else _map_of_blender(hdri)
-    if path.suffix != ".exr":
-        raise EngineError(
-            f"{path}: the raster engine reads .exr environment maps only; use the engine cycles"
-        )
-    channels = read_exr(path)
-    image: Floats = np.stack([channels[name] for name in "RGB"], axis=-1).astype(np.float32)
-    return image
-
-
 def _map_of_blender(name: str) -> Path:
     """An environment map of Blender's wheel, which need not be able to run for that."""
     spec = find_spec("bpy")
@@ -104,12 +94,6 @@ def _map_of_blender(name: str) -> Path:
     raise EngineError(
         f"environment map {name!r} comes with the package bpy, which is missing: pip install bpy"
     )
-
-
-def _solid_angles(height: int, width: int) -> Floats:
-    edges = np.cos(np.pi * np.arange(height + 1) / height)
-    rows = (edges[:-1] - edges[1:]) * 2 * np.pi / width
-    return np.broadcast_to(rows[:, None], (height, width)).astype(np.float32)
 
 
 def _take_sun(image: Floats, angle: Floats) -> tuple[tuple[Floats, Floats] | None, Floats]:

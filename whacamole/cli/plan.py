@@ -27,7 +27,10 @@ def plan(
     people: Annotated[
         str | None, typer.Option(help="People in a scene of single motions.", show_default="1")
     ] = None,
-    stages: Annotated[str | None, typer.Option(help="Places to choose from.", show_default="all")] = None,
+    stages: Annotated[
+        str | None,
+        typer.Option(help="Places to choose from: names, files, folders.", show_default="all built in"),
+    ] = None,
     frames: Annotated[
         int | None, typer.Option(help="Frames a sequence at most; 0: all.", show_default="240")
     ] = None,

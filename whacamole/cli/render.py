@@ -32,7 +32,16 @@ def render(
     ] = None,
     stages: Annotated[
         str | None,
-        typer.Option(help="Places to choose from, such as plaza,park.", show_default="all"),
+        typer.Option(
+            help="Places to choose from: names such as plaza,park, and files or a folder of your own.",
+            show_default="all that are built in",
+        ),
+    ] = None,
+    hdris: Annotated[
+        Path | None,
+        typer.Option(
+            help="Folder of .exr and .hdr maps to light stages under a sky.", show_default="built-in skies"
+        ),
     ] = None,
     frames: Annotated[
         int | None,
@@ -162,7 +171,7 @@ def render(
     parse_device(device)  # a mistyped name is told before anything begins
     given = {
         "motions": motions, "shots": shots, "shots_per_motion": shots_per_motion, "frames": frames,
-        "people": people, "stages": stages,
+        "people": people, "stages": stages, "hdris": hdris,
         "motion_blur": motion_blur, "f_number": f_number, "exposure": exposure, "noise": noise,
         "size": size, "fps": fps, "quality": quality, "engine": engine, "passes": passes,
         "image_format": image_format, "body_model": body_model, "textures": textures, "seed": seed,

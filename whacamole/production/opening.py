@@ -87,7 +87,8 @@ def _with_engine(recipe: Recipe, engine: str) -> Recipe:
 def _refuse_other_files(layout: DatasetLayout) -> None:
     if (layout.root / "recipe.json").exists() or not layout.root.exists():
         return
-    if any(not path.name.startswith(".recipe-") for path in layout.root.iterdir()):
+    ours = {path for path in layout.root.iterdir() if path.name.startswith(".recipe-")} | {layout.work}
+    if any(path not in ours for path in layout.root.iterdir()):
         if (layout.root / "recipe.json").exists():  # another run has begun it this moment
             return
         raise DatasetError(f"{layout.root}: holds other files and no dataset; choose an empty --out")

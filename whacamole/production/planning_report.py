@@ -5,6 +5,8 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
+from whacamole.dataset import DatasetLayout
+from whacamole.production.locations import places_of
 from whacamole.production.planning import Planned, make_plans
 from whacamole.recipe import Recipe
 
@@ -25,7 +27,8 @@ def plan_with_progress(
             status.update(f"planning: {made} done, last {entry.sequence_id}")
 
         worklist, planned = make_plans(recipe, out, jobs=jobs, on_plan=tell)
-    return planned, [str(file.problem) for file in worklist.refused]
+    problems = places_of(recipe, DatasetLayout(out.resolve())).problems
+    return planned, [*(str(file.problem) for file in worklist.refused), *problems]
 
 
 def print_plans(planned: list[Planned], refused: list[str], *, quiet: bool) -> None:

@@ -33,6 +33,7 @@ class Production:
         sides: split → ids of its sequences.
         kept: how many sequences were already finished when it began.
         dry_run: nothing was made.
+        problems: stages and maps that could not be used, a line each.
     """
 
     root: Path
@@ -42,11 +43,13 @@ class Production:
     sides: dict[str, list[str]]
     kept: int = 0
     dry_run: bool = False
+    problems: tuple[str, ...] = ()
 
     @property
     def complete(self) -> bool:
         """Whether every sequence is there and every file could be used."""
-        return not self.worklist.refused and (self.dry_run or not self.worklist.open)
+        nothing_refused = not self.worklist.refused and not self.problems
+        return nothing_refused and (self.dry_run or not self.worklist.open)
 
     @property
     def finished(self) -> list[str]:
@@ -61,6 +64,7 @@ class Production:
             "finished": self.finished,
             "failed": self.failures,
             "refused": {str(file.path): file.problem for file in self.worklist.refused},
+            "refused_stages": list(self.problems),
             "seconds": round(self.seconds, 3),
             "complete": self.complete,
         }
@@ -85,6 +89,8 @@ class Production:
             Console().print(profile_table(profiles))
         for file in self.worklist.refused:
             errors.print(f"refused: {file.problem}", markup=False)
+        for problem in self.problems:
+            errors.print(f"refused: {problem}", markup=False)
         for error in self.failures.values():
             errors.print(f"failed: {error}", markup=False)
 

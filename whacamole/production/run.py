@@ -22,6 +22,7 @@ from whacamole.dataset.splitting import refresh_splits
 from whacamole.dataset.statistics import collect
 from whacamole.errors import DatasetError, RecipeError
 from whacamole.production.attempt import DISK_FULL, AttemptError, attempt
+from whacamole.production.locations import forget_places, read_places
 from whacamole.production.means import Limits, Means
 from whacamole.production.opening import index_lock, open_dataset_for, settle_engine
 from whacamole.production.progress import Monitor
@@ -63,6 +64,7 @@ def produce(
     settled = settle_engine(recipe, layout, quiet)
     facts_of_dataset = _facts(settled)
     try:
+        places = read_places(settled, layout, quiet=quiet)
         settled = open_dataset_for(settled, layout, engine_is_ours=recipe.engine == "auto")
         worklist = _worklist(settled, layout, means)
         started = time.monotonic()
@@ -81,7 +83,8 @@ def produce(
     finished = _worklist(settled, layout, means)
     seconds = time.monotonic() - started
     kept = len(worklist.orders) - len(worklist.open)
-    return Production(layout.root, finished, failures, seconds, sides, kept=kept)
+    forget_places(settled, layout)
+    return Production(layout.root, finished, failures, seconds, sides, kept=kept, problems=places.problems)
 
 
 def _worklist(recipe: Recipe, layout: DatasetLayout, means: Means) -> Worklist:

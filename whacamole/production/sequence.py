@@ -20,6 +20,7 @@ from whacamole.labels.camera import Film
 from whacamole.motion import read_motion
 from whacamole.production.filming import camera_neighbours, film_of, plan_camera
 from whacamole.production.labelling import write_labels
+from whacamole.production.locations import places_of
 from whacamole.production.overlap import beside
 from whacamole.production.place import make_in_place
 from whacamole.production.preview import write_preview
@@ -172,7 +173,7 @@ def take_of(order: SequenceOrder, *, textures: Path | None) -> Take:
             seed=recipe.seed,
             shot_index=order.shot_index,
             textures=textures,
-            stages=recipe.stages,
+            places=places_of(recipe, DatasetLayout(order.root)),
             companions=[read_motion(file, fps=recipe.fps) for file in order.companions],
             subdivision=SUBDIVISION[recipe.quality],
             uv_textures=recipe.textures,

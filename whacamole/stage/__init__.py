@@ -7,10 +7,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from whacamole.stage.indoors import living_room, sports_hall, warehouse
+from whacamole.stage.light import Hdri, lit_by
 from whacamole.stage.outdoors import courtyard, market, night_street, park, plaza, rooftop
+from whacamole.stage.own import OwnStage
+from whacamole.stage.places import Places, find_places
 from whacamole.stage.stage import SetBuilder, Stage
+from whacamole.stage.survey import Ground
 
-__all__ = ["STAGES", "SetBuilder", "Stage", "stage_rand"]
+__all__ = [
+    "STAGES",
+    "Ground",
+    "Hdri",
+    "OwnStage",
+    "Places",
+    "SetBuilder",
+    "Stage",
+    "find_places",
+    "lit_by",
+]
 
 STAGES: dict[str, Callable[[np.random.Generator, NDArray[np.float64], Path | None], Stage]] = {
     "plaza": plaza,
@@ -24,16 +38,3 @@ STAGES: dict[str, Callable[[np.random.Generator, NDArray[np.float64], Path | Non
     "warehouse": warehouse,
 }
 """Every stage by name: each draws itself from a generator around the people's paths (N, 2) [m]."""
-
-
-def stage_rand(
-    rng: np.random.Generator, paths: NDArray[np.float64], folder: Path | None, names: tuple[str, ...] = ()
-) -> Stage:
-    """Draw one of the stages ``names`` (none: any of them) around ``paths``.
-
-    Args:
-        paths: (N, 2) ground positions that people will have [m].
-        folder: where textures are written; None paints none.
-    """
-    choice = names or tuple(STAGES)
-    return STAGES[choice[int(rng.integers(len(choice)))]](rng, paths, folder)

@@ -3,6 +3,7 @@
 What counts is the whole take, not its first frame: paths may cross if they are walked at different times.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -74,13 +75,17 @@ def gap_over_time(one: Footprint, other: Footprint) -> float:
 
 
 def place_crowd(
-    present: list[Footprint], newcomers: list[Footprint], rng: np.random.Generator
+    present: list[Footprint],
+    newcomers: list[Footprint],
+    rng: np.random.Generator,
+    allows: Callable[[Footprint], bool] = lambda _: True,
 ) -> list[Placement | None]:
     """Place each newcomer among those present and those placed before.
 
     Args:
         present: people whose place is fixed.
         newcomers: T frames each, anywhere; the middle of their path is moved to the place drawn.
+        allows: whether the ground is free under a footprint.
 
     Returns:
         One placement a newcomer, None where no free place was found within the tries.
@@ -88,7 +93,7 @@ def place_crowd(
     everybody = list(present)
     placements: list[Placement | None] = []
     for newcomer in newcomers:
-        placement = _free_place(everybody, newcomer, rng)
+        placement = _free_place(everybody, newcomer, rng, allows)
         placements.append(placement)
         if placement is not None:
             everybody.append(newcomer.moved(placement))
@@ -96,7 +101,10 @@ def place_crowd(
 
 
 def _free_place(
-    everybody: list[Footprint], newcomer: Footprint, rng: np.random.Generator
+    everybody: list[Footprint],
+    newcomer: Footprint,
+    rng: np.random.Generator,
+    allows: Callable[[Footprint], bool],
 ) -> Placement | None:
     middle = (newcomer.center.min(axis=0) + newcomer.center.max(axis=0)) / 2.0
     reach = FIRST_RADIUS
@@ -109,7 +117,8 @@ def _free_place(
             shift = distance * np.array([np.cos(bearing), np.sin(bearing)]) - turned
             placement = Placement(float(yaw), (float(shift[0]), float(shift[1])))
             moved = newcomer.moved(placement)
-            if all(gap_over_time(moved, other) > PERSONAL_SPACE for other in everybody):
+            apart = all(gap_over_time(moved, other) > PERSONAL_SPACE for other in everybody)
+            if apart and allows(moved):
                 return placement
         reach *= GROWTH
     return None

@@ -12,9 +12,10 @@ from whacamole.body import JOINT_INDEX, BodyModel, BodyParams, Posed, facing
 from whacamole.labels.people import stored_params
 from whacamole.motion import Motion
 from whacamole.seeds import generator
-from whacamole.stage import Stage, stage_rand
+from whacamole.stage import Places, Stage
 from whacamole.take.casting import Role, cast_role
-from whacamole.take.crowd import Footprint, place_crowd
+from whacamole.take.crowd import Footprint, Placement, place_crowd
+from whacamole.take.location import choose_location
 from whacamole.take.placing import body_params, choose_window, ground_shift, path_scale, scene_transform
 
 __all__ = ["Performer", "Take", "stage_take"]
@@ -102,7 +103,7 @@ def stage_take(
     seed: int,
     shot_index: int,
     textures: Path | None,
-    stages: tuple[str, ...] = (),
+    places: Places | None = None,
     companions: Sequence[Motion] = (),
     subdivision: int = 0,
     uv_textures: Path | None = None,
@@ -113,13 +114,13 @@ def stage_take(
         frames: most frames to film; 0 for the whole motion.
         seed: of the dataset.
         textures: folder for textures made for this take; None stages for planning alone, with nothing drawn.
-        stages: names of stages to draw from; none: all.
+        places: stages to draw from; none: all built-in ones.
         companions: motions of further people, unrelated to the first; those that find no free place stay out.
         subdivision: levels for skin and clothes.
         uv_textures: the user's folder of pictures for the UV map of the body model.
 
     Raises:
-        TakeError: a motion is too short, or ``uv_textures`` has no fitting picture.
+        TakeError: a motion is too short, no stage has room for it, or ``uv_textures`` has no fitting picture.
     """
 
     def rng(purpose: str) -> np.random.Generator:
@@ -130,19 +131,19 @@ def stage_take(
     others = [
         _scene(other, body, length, rng, f" companion {number}") for number, other in enumerate(companions)
     ]
+    footprints = [Footprint.of(posed) for posed in scene.posed]
+    location = choose_location(rng("stage"), places or Places(), footprints)
     placements = place_crowd(
-        [Footprint.of(posed) for posed in scene.posed],
-        [Footprint.of(other.posed[0]) for other in others],
-        rng("crowd"),
+        footprints, [Footprint.of(other.posed[0]) for other in others], rng("crowd"), location.allows
     )
     people = [
-        (scene.motion.id, *person) for person in zip(scene.roles, scene.params, scene.posed, strict=True)
+        (scene.motion.id, *_moved(person, location.spot, body))
+        for person in zip(scene.roles, scene.params, scene.posed, strict=True)
     ]
     for other, placement in zip(others, placements, strict=True):
         if placement is not None:
-            j0 = body.rest_joints(other.params[0].betas, other.params[0].expression)[..., 0, :]
-            moved = other.params[0].transformed(placement.as_transform(), j0)
-            people.append((other.motion.id, other.roles[0], moved, body.pose(moved)))
+            person = _moved((other.roles[0], other.params[0], other.posed[0]), placement, body)
+            people.append((other.motion.id, *_moved(person, location.spot, body)))
     performers = tuple(
         Performer(
             number,
@@ -164,7 +165,20 @@ def stage_take(
         for number, (motion_id, role, params, posed) in enumerate(people, start=1)
     )
     paths = np.concatenate([person.posed.joints[:, 0, :2] for person in performers])
-    return Take(motion, scene.first, performers, stage_rand(rng("stage"), paths, textures, stages))
+    return Take(motion, scene.first, performers, location.build(paths, textures))
+
+
+Person = tuple[Role, BodyParams, Posed]
+
+
+def _moved(person: Person, placement: Placement | None, body: BodyModel) -> Person:
+    """Return a person who stands elsewhere, posed anew: bodies follow their parameters to the last bit."""
+    if placement is None:
+        return person
+    role, params, _ = person
+    j0 = body.rest_joints(params.betas, params.expression)[..., 0, :]
+    moved = params.transformed(placement.as_transform(), j0)
+    return role, moved, body.pose(moved)
 
 
 def _scene(motion: Motion, body: BodyModel, frames: int, rng: Draw, purpose: str) -> _Scene:
