@@ -1,7 +1,7 @@
 """Bodies to score on: one interface over SMPL-X, SMPL-H and SMPL."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
@@ -83,27 +83,27 @@ class SmplxBody:
     kind: BodyKind = "smplx"
 
     def __init__(self, model: BodyModel, sample: int | None = None) -> None:
-        V = model.num_vertices
+        V, full = model.num_vertices, model.arrays
         feet = foot_points(model.v_template, model.weights, self.kind)
         self.topology = f"smplx-{V}" if sample is None else f"smplx-{V}/{sample}"
-        self.extras, self.feet = model.extras, feet
+        self.model, self.extras, self.feet = model, model.extras, feet
         self.scored: IntArray | slice = slice(None)
+        kept: IntArray = np.arange(V)
         if sample is not None and sample < V:
             even = np.linspace(0, V - 1, sample).round().astype(np.intp)
-            support = np.unique(model.arrays.joint_regressor.nonzero()[1])
-            kept = np.unique(np.concatenate([even, support, feet]))
-            model = _restricted(model, kept)
+            kept = np.unique(np.concatenate([even, feet]))
             self.scored, self.feet = np.searchsorted(kept, even), np.searchsorted(kept, feet)
-        self.model = model
-        full = model.arrays
-        dense = full.posedirs.nnz > DENSE * np.prod(full.posedirs.shape)
-        self._skin = Skin.build(full.expression_dirs, full.posedirs, full.weights, dense=bool(dense))
-        self._shape_dirs = full.shapedirs.reshape(-1, NUM_BETAS)
+        self._weights = full.weights[kept]
+        self._template = full.v_template[kept].reshape(-1, 1)
+        self._shape_dirs = full.shapedirs[kept].reshape(-1, NUM_BETAS)
+        correctives = full.posedirs[(3 * kept[:, None] + np.arange(3)).ravel()]
+        dense = bool(full.posedirs.nnz > DENSE * np.prod(full.posedirs.shape))
+        self._skin = Skin.build(full.expression_dirs[kept], correctives, self._weights, dense=dense)
 
     @property
     def weights(self) -> FloatArray:
         """See :class:`Body`."""
-        return self.model.weights
+        return self._weights
 
     def rest_pelvis(self, betas: FloatArray) -> FloatArray:
         """See :class:`Body`."""
@@ -120,7 +120,7 @@ class SmplxBody:
         full = params.full_pose()
         rest = np.broadcast_to(self.model.rest_joints(params.betas, params.expression), full.shape)
         shaped = self._shape_dirs @ np.atleast_2d(params.betas).T.astype(np.float32)
-        shaped += self.model.v_template.reshape(-1, 1)
+        shaped += self._template
         vertices, joints = skin_block(self._skin, shaped, params.expression, rotations(full), rest)
         vertices -= joints[:, 0].T.astype(np.float32)
         return vertices
@@ -182,19 +182,6 @@ def _wide(betas: FloatArray) -> FloatArray:
     """Ten shape coefficients of however many."""
     cut = betas[..., :NUM_BETAS]
     return np.pad(cut, [(0, 0)] * (cut.ndim - 1) + [(0, NUM_BETAS - cut.shape[-1])])
-
-
-def _restricted(model: BodyModel, kept: IntArray) -> BodyModel:
-    """The model on some of its vertices, those that its joints are regressed from among them."""
-    full = model.arrays
-    rows = (3 * kept[:, None] + np.arange(3)).ravel()
-    arrays = replace(
-        full, v_template=full.v_template[kept], shapedirs=full.shapedirs[kept],
-        expression_dirs=full.expression_dirs[kept], posedirs=full.posedirs[rows], weights=full.weights[kept],
-        joint_regressor=full.joint_regressor[:, kept], faces=np.zeros((0, 3), np.int32), quads=None,
-        uv_quads=None, uv_faces=np.zeros((0, 3), np.int32),
-    )  # fmt: skip
-    return BodyModel(arrays, name=model.name, sha256=model.sha256, gender=model.gender)
 
 
 def foot_points(template: npt.NDArray[Any], weights: npt.NDArray[Any], kind: BodyKind) -> IntArray:

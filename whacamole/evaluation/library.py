@@ -51,7 +51,10 @@ class BodyLibrary:
                     if isinstance(body, SmplxBody) and body.model.matches(person.model_sha256):
                         return body
             name = f"SMPL-X model {person.model_sha256[:12]}…"
-            raise EvaluationError(f"{name} is neither the embedded body nor given; add --body-model FILE")
+            raise EvaluationError(
+                f"{name} is neither the embedded body nor given; add --body-model FILE "
+                "(for data of another version: what its `whacamole body --export` writes)"
+            )
         found = self._files.get((person.kind, person.gender))
         if found is None:
             wanted = f"{person.kind.upper().replace('X', '-X').replace('H', '-H')} {person.gender}"
