@@ -70,8 +70,9 @@ def model_for(sequence: Sequence, path: Path | None) -> BodyModel:
     if not model.matches(stated):
         given = "the included body" if path is None else str(path)
         raise DatasetError(
-            f"{sequence.layout.people}: labels are about the body model {name} (sha256 {stated[:12]}), not "
-            f"{given}; give its file with --body-model"
+            f"{sequence.layout.people}: labels are about the body model {name} of sha256 {stated[:12]}, not "
+            f"about {given} ({model.sha256[:12]}); give its file with --body-model, or view it with the "
+            "version of whacamole that made it"
         )
     return model
 

@@ -21,7 +21,7 @@ __all__ = ["LAYERS", "Look", "Scene3D"]
 Rgb = tuple[int, int, int]
 
 TRUE_CAMERA: Rgb = (40, 40, 48)
-PREDICTED: Rgb = (250, 120, 20)
+PREDICTED: Rgb = (85, 95, 125)  # of no track, so that it is never taken for the truth
 GROUND_TOUCH: Rgb = (225, 30, 40)
 PERSON_TOUCH: Rgb = (215, 40, 200)
 SHOT_COLOURS: tuple[Rgb, ...] = ((209, 73, 91), (0, 121, 140), (237, 174, 73), (106, 76, 147), (48, 99, 142))
