@@ -24,15 +24,15 @@ class Quality(SceneValue):
     """Most samples a pixel gets."""
     noise_threshold: NonNegative = 0.0
     """Stop sampling a pixel at this noise level; 0 gives every pixel all samples."""
-    denoise: Literal["off", "fast", "balanced", "high"] = "balanced"
+    denoise: Literal["off", "fast", "balanced", "high"] = "high"
     """The strength of Open Image Denoise."""
-    prefilter: Literal["none", "fast", "accurate"] = "none"
+    prefilter: Literal["none", "fast", "accurate"] = "accurate"
     """Whether albedo and normal are themselves denoised before they guide the denoiser."""
-    diffuse_bounces: Bounces = 2
-    glossy_bounces: Bounces = 2
+    diffuse_bounces: Bounces = 4
+    glossy_bounces: Bounces = 4
     transparent_bounces: Bounces = 8
     """Layers of clipped or blended surface (hair cards) a ray may pass."""
-    light_tree: bool = False
+    light_tree: bool = True
     clamp_indirect: NonNegative = 10.0
     """Largest value an indirect sample may add; 0 is no limit."""
 
@@ -40,16 +40,9 @@ class Quality(SceneValue):
 QUALITIES: dict[str, Quality] = {
     quality.name: quality
     for quality in (
-        Quality(name="draft", samples=8),
-        Quality(name="standard", samples=16, prefilter="accurate"),
-        Quality(
-            name="high",
-            samples=64,
-            denoise="high",
-            prefilter="accurate",
-            diffuse_bounces=4,
-            glossy_bounces=4,
-        ),
+        Quality(name="draft", samples=4, denoise="balanced"),
+        Quality(name="standard", samples=16),
+        Quality(name="high", samples=64),
     )
 }
 """The presets by name."""

@@ -25,7 +25,7 @@ def sampling_settings(quality: Quality) -> dict[str, Any]:
         "volume_bounces": 0,
         "transparent_max_bounces": quality.transparent_bounces,
         "sample_clamp_indirect": quality.clamp_indirect,
-        "caustics_reflective": False,
+        "caustics_reflective": True,  # without them a room of glossy walls is too dark
         "caustics_refractive": False,
     }
 
