@@ -74,8 +74,10 @@ def test_other_models_are_refused(tmp_path, make, change):
         SmplModel.load(tmp_path / "SMPL.npz")
 
 
-def test_local_bodies_are_those_of_the_model_without_the_root():
-    body, rng = SmplxBody(BodyModel.embedded()), np.random.default_rng(2)
+@pytest.mark.parametrize("file", [None, "SMPLX_NEUTRAL.npz"], ids=["few correctives", "dense correctives"])
+def test_local_bodies_are_those_of_the_model_without_the_root(models, file):
+    model = BodyModel.load(models / file) if file else BodyModel.embedded()
+    body, rng = SmplxBody(model), np.random.default_rng(2)
     pose = LocalPose(
         betas=rng.normal(size=10),
         body_pose=0.2 * rng.normal(size=(3, 21, 3)),
@@ -88,7 +90,7 @@ def test_local_bodies_are_those_of_the_model_without_the_root():
         pose.betas, pose.expression, np.zeros((3, 3)), np.zeros((3, 3)), pose.body_pose, pose.left_hand,
         pose.right_hand, *np.zeros((3, 3, 3)),
     )  # fmt: skip
-    posed = BodyModel.embedded().pose(params)
+    posed = model.pose(params)
     np.testing.assert_allclose(body.local_joints(pose), posed.joints - posed.joints[:, :1], atol=1e-12)
     vertices = body.local_vertices(pose).transpose(2, 0, 1)
     np.testing.assert_allclose(vertices, posed.vertices - posed.joints[:, :1], atol=1e-6)
