@@ -1,5 +1,7 @@
 """All metrics of one matched person."""
 
+import numpy as np
+
 from whacamole.errors import EvaluationError
 from whacamole.evaluation.core.alignment import FloatArray, umeyama
 from whacamole.evaluation.core.contact import detection_counts, ratios, standing
@@ -135,7 +137,9 @@ def _paths(
     score.put_path(f"prediction/person/{pair.index}", pair.rows, path.aligned)
     score.put_person("h_ate", pair.index, path.mean)
     score.put_person("h_ate_rmse", pair.index, path.rmse)
-    if protocol.with_scale:
+    if not np.isfinite(path.scale):
+        score.note("a predicted root does not move: H-ATE at the middle of the true path, no H-AS")
+    elif protocol.with_scale:
         score.put_person("h_as", pair.index, path.scale)
 
 

@@ -45,7 +45,9 @@ def score_camera(
         return
     score.put_path("prediction/camera", rows, path.aligned)
     found = {"c_ate": path.mean, "c_ate_rmse": path.rmse, "c_ate_rigid": rigid.mean}
-    if protocol.with_scale:
+    if not np.isfinite(path.scale):
+        score.note("the predicted camera does not move: C-ATE at the middle of the true path, no C-AS")
+    elif protocol.with_scale:
         found["c_as"] = path.scale
     score.values.update({key: np.array(value) for key, value in found.items()})
 

@@ -122,8 +122,16 @@ def test_a_person_who_stays_has_no_rte_and_no_scale():
     assert root_translation_error(still, still) is None
     assert path_error(still, still) is None
     assert path_error(walk(6)[:1, 0], walk(6)[:1, 0]) is None
-    assert path_error(np.zeros((30, 3)), walk(6)[:, 0]) is None
-    assert path_error(np.zeros((30, 3)), walk(6)[:, 0], with_scale=False) is not None
+
+
+@pytest.mark.parametrize("place", [0.0, 2.3, -1e4 / 3])
+@pytest.mark.parametrize("with_scale", [True, False])
+def test_a_prediction_that_does_not_move_is_in_the_middle_and_has_no_scale(place, with_scale):
+    truth = walk(6)[:, 0]
+    path = path_error(np.full(truth.shape, place), truth, with_scale=with_scale)
+    apart = np.linalg.norm(truth - truth.mean(axis=0), axis=1)
+    np.testing.assert_allclose(path.error, 1000 * apart, rtol=1e-9)
+    assert np.isnan(path.scale) == with_scale
 
 
 @settings(max_examples=30, deadline=None, derandomize=True)

@@ -16,6 +16,9 @@ STATIC_SPREAD = 0.05
 STATIC_PATH = 0.10
 """A path shorter than this [m] is no denominator for RTE."""
 
+_ROUNDING = 1e-12
+"""Share of a path's numbers below which its spread is no motion."""
+
 
 def segment_error(
     prediction: FloatArray,
@@ -64,7 +67,8 @@ class PathError:
 
     Attributes:
         error: (F,) [mm].
-        scale: s of s · prediction ≈ truth, the alignment scale AS from prediction to truth; 1 when rigid.
+        scale: s of s · prediction ≈ truth, the alignment scale AS from prediction to truth; 1 when rigid, NaN
+            for a prediction that does not move.
         aligned: (F, 3) [m], the prediction where it was compared.
     """
 
@@ -86,15 +90,16 @@ class PathError:
 def path_error(prediction: FloatArray, truth: FloatArray, *, with_scale: bool = True) -> PathError | None:
     """H-ATE and H-AS for a root, C-ATE and C-AS for a camera centre: paths (F, 3) [m].
 
-    ``None`` where the alignment does not exist: a true path that stays in place (:data:`STATIC_SPREAD`), or,
-        with
-    scale, a predicted one that does not move at all.
+    ``None`` for a true path that stays in place (:data:`STATIC_SPREAD`): it has no scale to be aligned to.
+    With scale, a predicted path that does not move at all is compared at the mean of the true one, where
+    every scale puts it; its own scale is NaN.
     """
     if len(truth) < 2 or spread(truth) < STATIC_SPREAD:
         return None
+    if with_scale and spread(prediction) <= _ROUNDING * (1.0 + float(np.abs(prediction).max())):
+        middle = np.broadcast_to(truth.mean(axis=0), truth.shape)
+        return PathError(distances(middle, truth) * MILLIMETRES, float("nan"), middle)
     found = umeyama(prediction, truth, with_scale=with_scale)
-    if not np.isfinite(found.scale):
-        return None
     aligned = found.apply(prediction)
     return PathError(distances(aligned, truth) * MILLIMETRES, float(found.scale), aligned)
 
