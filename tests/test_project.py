@@ -3,6 +3,7 @@
 import ast
 import importlib
 import importlib.metadata
+import os
 import re
 import subprocess
 import sys
@@ -211,6 +212,22 @@ def test_every_command_and_option_has_help() -> None:
         assert command.help, f"{name} has no help"
         for parameter in command.params:
             assert getattr(parameter, "help", None), f"{name}: {parameter.name} has no help"
+
+
+@pytest.mark.parametrize(
+    ("typed", "offered"),
+    [
+        ("whacamole re", {"render", "recipe"}),
+        ("whacamole view --s", {"--save"}),
+        ("whacamole baseline r", {"run"}),
+    ],
+)
+def test_the_shell_completes_commands_and_options(typed: str, offered: set[str]) -> None:
+    script = Path(sys.executable).with_name("whacamole")
+    words = {"COMP_WORDS": typed, "COMP_CWORD": str(typed.count(" "))}
+    environment = {**os.environ, "_WHACAMOLE_COMPLETE": "complete_bash", **words}
+    found = subprocess.run([script], env=environment, capture_output=True, text=True, check=False).stdout
+    assert set(found.split()) == offered
 
 
 def _typed_commands() -> Iterator[tuple[str, str]]:

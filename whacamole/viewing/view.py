@@ -1,7 +1,7 @@
 """What `whacamole view` does: a request in, a running viewer or a file out."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -9,7 +9,7 @@ from rich.console import Console
 from rich.progress import Progress
 
 from whacamole.dataset import Dataset, Sequence, open_dataset
-from whacamole.errors import DatasetError
+from whacamole.errors import DatasetError, EvaluationError
 from whacamole.viewing.bodies import actors_of, model_for
 from whacamole.viewing.live import Viewer, serving
 from whacamole.viewing.prediction import Alignment, read_prediction
@@ -93,7 +93,12 @@ def serve_view(request: Request, host: str, port: int, say: Callable[[str], obje
     with serving(host, port) as server:
 
         def draw(sequence_id: str) -> Scene3D:
-            return _scene(request, server, data[sequence_id], Look(), whole=True)
+            sequence = data[sequence_id]
+            try:
+                return _scene(request, server, sequence, Look(), whole=True)
+            except EvaluationError as error:  # the truth can be looked at all the same
+                say(str(error))
+                return _scene(replace(request, pred=None), server, sequence, Look(), whole=True)
 
         viewer = Viewer(server, data.ids, draw, first.id)
         say(f"look at http://{host}:{server.get_port()} (Ctrl-C stops)")

@@ -16,7 +16,7 @@ from whacamole.cli import app
 from whacamole.dataset import Dataset, DatasetLayout
 from whacamole.dataset.statistics import Statistics, collect
 from whacamole.errors import DatasetError
-from whacamole.viewing.page import page_html
+from whacamole.viewing.page import page_html, write_page
 from whacamole.viewing.places import Places
 
 PAPER = 2434
@@ -144,4 +144,6 @@ def test_the_audit_is_kept_and_known_to_be_old(dataset: Dataset) -> None:
     (root / "check.json").write_text('{"findings": 3}')
     with pytest.raises(DatasetError, match="whacamole check"):
         read_findings(root)
+    write_page(dataset.layout)  # a broken outcome is said, and no reason to be without a page
+    assert "not the outcome of an audit" in Places(root).page.read_text()
     (root / "check.json").unlink()

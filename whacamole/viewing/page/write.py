@@ -13,6 +13,7 @@ from whacamole.check.stored import StoredFindings, read_findings
 from whacamole.dataset import Dataset, DatasetLayout, open_dataset
 from whacamole.dataset.files import write_text
 from whacamole.dataset.statistics import Statistics, collect
+from whacamole.errors import DatasetError
 from whacamole.viewing.page.numbers import numbers_html
 from whacamole.viewing.page.rows import COLUMNS, rows_of
 from whacamole.viewing.places import Places
@@ -30,16 +31,26 @@ def write_page(layout: DatasetLayout, numbers: Statistics | None = None) -> None
         DatasetError: a file of the dataset is missing or broken.
     """
     data = open_dataset(layout.root)
-    found = read_findings(layout.root)
+    try:
+        found: StoredFindings | str | None = read_findings(layout.root)
+    except DatasetError as error:  # no reason to be without a page
+        found = str(error)
     counted = collect(data) if numbers is None else numbers
     write_text(Places(layout.root).page, page_html(data, counted, found))
 
 
-def page_html(data: Dataset, numbers: Statistics, found: StoredFindings | None) -> str:
-    """The page as one HTML text that loads nothing but pictures, videos and scenes of the dataset."""
+def page_html(data: Dataset, numbers: Statistics, found: StoredFindings | str | None) -> str:
+    """The page as one HTML text that loads nothing but pictures, videos and scenes of the dataset.
+
+    Args:
+        found: the outcome of the last audit, why it cannot be read, or None if there was none.
+    """
     style, script = _part("page.css"), _part("page.js")
     name = data.layout.root.resolve().name
-    rows: Mapping[str, Any] = {"columns": COLUMNS, "rows": rows_of(data, found)}
+    rows: Mapping[str, Any] = {
+        "columns": COLUMNS,
+        "rows": rows_of(data, None if isinstance(found, str) else found),
+    }
     values = {
         "policy": _policy(style, script),
         "name": escape(name),
@@ -84,8 +95,10 @@ def _about(index: Mapping[str, Any], numbers: Statistics) -> str:
     )
 
 
-def _audit(found: StoredFindings | None) -> str:
+def _audit(found: StoredFindings | str | None) -> str:
     """What the last audit said, as HTML."""
+    if isinstance(found, str):
+        return f"<p class=finding>{escape(found)}</p>"
     if found is None:
         commands = "<code>whacamole check</code>, then <code>whacamole page</code>"
         return f"<p class=note>Not audited yet: {commands}.</p>"
