@@ -107,6 +107,9 @@ def run(
         Path | None,
         typer.Option(help="SMPL-X .npz to predict with.", show_default="the embedded CC0 body"),
     ] = None,
+    keep: Annotated[
+        bool, typer.Option("--keep", help="Leave out what has a prediction in --out already.")
+    ] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print errors only.")] = False,
     json_output: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
 ) -> None:
@@ -132,6 +135,8 @@ def run(
         weights=None if weights is None else load_weights(weights),
     )
     footage = split_footage(data, split) if data is not None else one_video(video)  # type: ignore[arg-type]
+    if keep:
+        footage = [one for one in footage if not (out / f"{one.id}.npz").exists()]
     outcomes = []
     with _Bar(len(footage), quiet=quiet or json_output) as bar:
         for outcome in run_all(footage, setup, out, bar.watch):

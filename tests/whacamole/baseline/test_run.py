@@ -95,6 +95,15 @@ def test_the_same_run_gives_the_same_bytes(dataset: Path, tmp_path: Path) -> Non
     assert first == second
 
 
+def test_what_is_there_is_kept_if_asked_for(dataset: Path, tmp_path: Path) -> None:
+    path = tmp_path / "pair-00.npz"
+    path.write_bytes(b"done before")
+    assert _run("run", "--data", dataset, "--out", tmp_path, *ORACLE, "--keep", "-q").exit_code == 0
+    assert path.read_bytes() == b"done before"
+    assert _run("run", "--data", dataset, "--out", tmp_path, *ORACLE, "-q").exit_code == 0
+    assert path.read_bytes() != b"done before"
+
+
 @pytest.mark.parametrize(
     ("options", "message"),
     [
