@@ -1,12 +1,11 @@
 """Run the baseline with many sets of options and put what `whacamole evaluate` finds into one table."""
 
-import subprocess
-import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 
+from whacamole.cli.baseline import app
 from whacamole.dataset import open_dataset
 from whacamole.evaluation import METRICS, Bodies, SequenceScore, evaluate, pooled
 
@@ -25,9 +24,9 @@ def predicted(data: Path, work: Path, runs: Mapping[str, Sequence[object]], spli
         folders[label] = out
         if all((out / f"{name}.npz").exists() for name in ids):
             continue
-        words = ["baseline", "run", "--data", data, "--split", split, "--out", out, *options, "--keep", "-q"]
+        words = ["run", "--data", data, "--split", split, "--out", out, *options, "--keep", "-q"]
         # A sequence that cannot be done is told on standard error, and missing in the count of sequences.
-        subprocess.run([sys.executable, "-m", "whacamole", *map(str, words)], check=False)
+        app([str(word) for word in words], standalone_mode=False)
     return folders
 
 
