@@ -14,13 +14,13 @@ import sys
 from collections import defaultdict
 from pathlib import Path
 
-import av
 import numpy as np
 from PIL import Image
 
-from render_jobs.images import picture_writer
+from render_jobs.images import JPEG_QUALITY
 from render_jobs.processes import child_environment
 from whacamole.dataset import open_dataset
+from whacamole.dataset.video import write_video
 from whacamole.production.filming import film_of, plan_camera
 from whacamole.production.sequence import render_job, take_of
 from whacamole.production.worklist import work_of
@@ -86,23 +86,14 @@ def _codecs(frames: Path, scratch: Path) -> dict[str, int]:
     scratch.mkdir(parents=True)
     files = sorted(frames.iterdir())
     for file in files:
-        picture_writer(file, "jpg")(scratch / f"{file.stem}.jpg")
+        with Image.open(file) as picture:
+            picture.save(scratch / f"{file.stem}.jpg", quality=JPEG_QUALITY, subsampling=0)
     found = {"rgb png": _bytes(frames), "rgb jpg": _bytes(scratch)}
     for quality in (12, 18):
-        found[f"rgb mp4, crf {quality}"] = _video(files, scratch / f"{quality}.mp4", quality)
+        video = scratch / f"{quality}.mp4"
+        write_video(video, (np.asarray(Image.open(file)) for file in files), 30.0, quality=quality)
+        found[f"rgb mp4, quality {quality}"] = _bytes(video)
     return found
-
-
-def _video(files: list[Path], path: Path, quality: int) -> int:
-    with av.open(str(path), "w") as container:
-        first = Image.open(files[0])
-        stream = container.add_stream("libx264", rate=30, options={"crf": str(quality)})
-        stream.width, stream.height, stream.pix_fmt = first.width, first.height, "yuv444p"
-        for file in files:
-            frame = av.VideoFrame.from_image(Image.open(file).convert("RGB"))
-            container.mux(stream.encode(frame))
-        container.mux(stream.encode())
-    return path.stat().st_size
 
 
 def _bytes(path: Path) -> int:

@@ -1,19 +1,19 @@
-"""How much disk images take: measured by ``benchmarks/disk.py``, a little on the safe side."""
+"""How much disk images take: the largest of three stages, as measured by ``benchmarks/disk.py``."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 
 BYTES_PER_PIXEL: dict[str, float] = {
-    "jpg": 0.45,
-    "png": 1.9,
-    "mp4": 0.2,
-    "mask": 0.02,
-    "depth": 2.4,
-    "normal": 7.0,
-    "flow": 6.5,
+    "jpg": 0.50,
+    "png": 1.50,
+    "mp4": 0.11,
+    "mask": 0.01,
+    "depth": 2.75,
+    "normal": 1.44,
+    "flow": 6.12,
 }
-"""Of each pass; RGB by its format."""
+"""Of each pass; RGB by its format. Noise that a recipe adds makes RGB larger."""
 
 
 def frame_bytes(passes: Iterable[str], image_format: str, width: int, height: int) -> float:

@@ -83,7 +83,7 @@ def dask_crew(address: str) -> Iterator[Crew]:
     """The workers of a Dask scheduler that somebody else has started.
 
     Raises:
-        EngineError: Dask is not installed, or nobody answers at the address.
+        EngineError: Dask is not installed, nobody answers at the address, or does no longer.
     """
     distributed = _imported("distributed")
     try:
@@ -93,7 +93,14 @@ def dask_crew(address: str) -> Iterator[Crew]:
             f"cluster {address}: no Dask scheduler answers ({_short(error)}); start one with `dask scheduler`"
         ) from error
     with client:
-        yield _crew_of(client, f"Dask at {address}")
+        try:
+            yield _crew_of(client, f"Dask at {address}")
+        except Exception as error:
+            if client.status not in ("closed", "closing"):
+                raise
+            raise EngineError(
+                f"cluster {address}: the scheduler is gone; finished work is kept, the same command goes on"
+            ) from error
 
 
 @contextlib.contextmanager

@@ -27,10 +27,14 @@ from whacamole.production.worker import Say, main
 from whacamole.production.worklist import SequenceOrder, motion_checksum
 from whacamole.seeds import generator
 
-HOME = Path(os.environ["STAND_IN"])
 FAULTY_FRAME = 2
 MEMORY_MB = 900
 LABELS = ("camera", "people", "contact", "shot")
+
+
+def home() -> Path:
+    """The folder of the stand-in."""
+    return Path(os.environ["STAND_IN"])
 
 
 def make(order: SequenceOrder, say: Say, **_: Any) -> None:
@@ -40,7 +44,7 @@ def make(order: SequenceOrder, say: Say, **_: Any) -> None:
         frames = work / "job" / "out" / "rgb"
         frames.mkdir(parents=True, exist_ok=True)
         there = len(list(frames.iterdir()))
-        template = SequenceLayout(HOME / "template")
+        template = SequenceLayout(home() / "template")
         images = sorted((template.folder / "rgb").iterdir())
         say("step", name="render", frames=len(images), done=there)
         for number, image in enumerate(images):
@@ -56,7 +60,7 @@ def make(order: SequenceOrder, say: Say, **_: Any) -> None:
 
     if not make_in_place(order.root, order.sequence_id, fill):
         return
-    with (HOME / "made.log").open("a", encoding="utf-8") as log:
+    with (home() / "made.log").open("a", encoding="utf-8") as log:
         log.write(f"{order.sequence_id}\n")
 
 
@@ -83,11 +87,11 @@ def _facts(order: SequenceOrder, template: SequenceLayout) -> dict[str, Any]:
 
 
 def _meet_fault(sequence_id: str, frame: int) -> None:
-    if (HOME / "faults" / "disk-full").exists():
+    if (home() / "faults" / "disk-full").exists():
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
     if frame != FAULTY_FRAME:
         return
-    for file in (HOME / "faults").glob(f"{sequence_id}.*"):
+    for file in (home() / "faults").glob(f"{sequence_id}.*"):
         file.unlink()
         match file.suffix.removeprefix("."):
             case "abort":

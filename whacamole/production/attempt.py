@@ -113,7 +113,7 @@ def _run_worker(order: SequenceOrder, limits: Limits, stop: threading.Event | No
                 [*limits.worker, str(work / "order.json"), *words],
                 log,
                 hear,
-                timeout=limits.silence_s + GRACE_S,
+                timeout=limits.silence_s + min(GRACE_S, limits.silence_s),
                 time_limit=limits.time_s,
                 memory_limit_mb=memory,
                 environment=None if gpu is None else gpu.environment,

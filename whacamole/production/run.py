@@ -173,6 +173,8 @@ def _may_help(error: BaseException) -> bool:
 
 def _one_line(name: str, error: BaseException) -> str:
     text = " ".join(str(error).split()) or type(error).__name__
+    if isinstance(error, ModuleNotFoundError):
+        text += "; the cluster's workers need the packages that this environment has"
     return text if name in text else f"{name}: {text}"
 
 

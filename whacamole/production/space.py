@@ -11,14 +11,17 @@ from whacamole.production.worklist import SequenceOrder
 
 __all__ = ["check_disk", "check_room", "readable_bytes", "sequence_bytes", "work_bytes"]
 
-LABEL_BYTES = 6000
-"""Of a person in a frame: people.npz and contact.npz (benchmarks/disk.py)."""
+LABEL_BYTES = 8000
+"""Of a person in a frame: people.npz, contact.npz, camera.npz (benchmarks/disk.py, as all below)."""
 
 SEQUENCE_BYTES = 400_000
 """Of what a sequence has once: preview, plan, summary."""
 
-WORK_BYTES = 1_500_000
-"""What a person in a frame needs while the sequence is made: posed skin, clothes and hair, twice."""
+WORK_BYTES = 420_000
+"""Of a person in a frame while the sequence is made: skin, clothes and hair, for the job and for Blender."""
+
+WORK_ONCE = 40_000_000
+"""Of a sequence while it is made: textures, the stage, the frames that are being encoded."""
 
 
 def sequence_bytes(order: SequenceOrder) -> float:
@@ -30,7 +33,7 @@ def sequence_bytes(order: SequenceOrder) -> float:
 
 def work_bytes(order: SequenceOrder) -> float:
     """Return what a sequence takes besides, while it is made."""
-    return float(order.frames * order.people * WORK_BYTES)
+    return float(WORK_ONCE + order.frames * order.people * WORK_BYTES)
 
 
 def check_disk(orders: Sequence[SequenceOrder], jobs: int, root: Path) -> None:
