@@ -88,6 +88,7 @@ def _facts(order: SequenceOrder, template: SequenceLayout) -> dict[str, Any]:
 
 def _meet_fault(sequence_id: str, frame: int) -> None:
     if (home() / "faults" / "disk-full").exists():
+        (home() / "met-disk-full").touch()
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
     if frame != FAULTY_FRAME:
         return
@@ -107,8 +108,9 @@ def _meet_fault(sequence_id: str, frame: int) -> None:
                 hoard = np.ones(MEMORY_MB * 2**17)
                 time.sleep(600)
                 del hoard
-            case "slow":
-                time.sleep(2)
+            case "hold":
+                while not (home() / "go").exists():
+                    time.sleep(0.1)
 
 
 if __name__ == "__main__":

@@ -128,9 +128,13 @@ class RunRecord:
             write_json(layout.runs / f"{self.name}.json", asdict(self))
 
     def remove(self, layout: DatasetLayout) -> None:
-        """Remove it: the run has ended."""
+        """Remove it: the run has ended. Those of runs that were killed go with it."""
         with contextlib.suppress(OSError):
             (layout.runs / f"{self.name}.json").unlink(missing_ok=True)
+            live = {run.name for run in live_runs(layout)}
+            for file in layout.runs.glob("*.json"):
+                if file.stem not in live:
+                    file.unlink(missing_ok=True)
             layout.runs.rmdir()  # where it was the last one
 
 

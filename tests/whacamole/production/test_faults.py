@@ -97,12 +97,12 @@ def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
 
 
 @pytest.fixture
-def cluster() -> Iterator[str]:
+def cluster(home: Home) -> Iterator[str]:
     """The address of a scheduler with four worker processes, each restarted when it dies."""
     process = subprocess.Popen(
         [sys.executable, TESTS / "farm_cluster.py"],
         stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
-        env=child_environment() | {"STAND_IN": ""},
+        env=child_environment() | {"STAND_IN": str(home.folder)},
     )  # fmt: skip
     assert process.stdout is not None
     yield process.stdout.readline().strip()
@@ -165,7 +165,7 @@ def test_on_one_machine(home: Home, undisturbed: dict[str, bytes], tmp_path: Pat
     assert before < SEQUENCES
     (home.faults / "disk-full").touch()
     second = home.start(out)
-    time.sleep(4)
+    wait_for((home.folder / "met-disk-full").exists, "nobody met the full disk")
     assert len(home.made()) == before
     (home.faults / "disk-full").unlink()  # somebody made room
     _, errors = second.communicate(timeout=DEADLINE_S)
@@ -188,7 +188,7 @@ def test_on_a_dask_cluster_then_on_anything(
     first.communicate()
     (home.faults / "disk-full").touch()
     runs = [home.start(out, cluster), home.start(out, "", "1/2"), home.start(out, "", "2/2"), home.start(out)]
-    time.sleep(4)
+    wait_for((home.folder / "met-disk-full").exists, "nobody met the full disk")
     (home.faults / "disk-full").unlink()
     for run in runs:
         _, errors = run.communicate(timeout=DEADLINE_S)
@@ -211,15 +211,16 @@ def small_disk(tmp_path: Path) -> Iterator[Path]:
 def test_a_disk_that_fills_up_while_the_run_goes_on(home: Home, small_disk: Path, tmp_path: Path) -> None:
     names = names_of(small_disk / "data")[:8]
     for name in names[1:]:
-        (home.faults / f"{name}.slow").touch()
+        (home.faults / f"{name}.hold").touch()
     run = home.start(small_disk / "data", sequences=8)
     wait_for(lambda: len(home.made()) >= 1, "nothing was made")
     with contextlib.suppress(OSError), (small_disk / "ballast").open("wb") as ballast:
         while True:
             ballast.write(bytes(2**16))
     assert shutil.disk_usage(small_disk).free < 2**17
-    time.sleep(6)
-    assert len(home.made()) < 8
+    (home.folder / "go").touch()
+    wait_for(lambda: not orphans(small_disk), "somebody works on a full disk")
+    assert len(home.made()) == 1
     (small_disk / "ballast").unlink()
     _, errors = run.communicate(timeout=DEADLINE_S)
     assert run.returncode == 0, errors
