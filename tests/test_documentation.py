@@ -15,6 +15,7 @@ from render_jobs import PASSES
 from whacamole.body import BodyModel, BodyParams
 from whacamole.body.joints import JOINT_NAMES
 from whacamole.dataset import DatasetLayout, write_index, write_summary
+from whacamole.dataset.splitting import refresh_splits
 from whacamole.labels import (
     FrameImages,
     LabelledPerson,
@@ -87,7 +88,8 @@ def _write(layout: DatasetLayout, labels: SequenceLabels, images: list[FrameImag
     np.savez(sequence.people, **labels.people)
     np.savez(sequence.contact, **labels.contact)
     write_summary(sequence, {"motion_id": "walk"})
-    write_index(layout, {}, test_fraction=0.0)
+    write_index(layout, {})
+    refresh_splits(layout, 0.0)
 
 
 @pytest.fixture(scope="module")

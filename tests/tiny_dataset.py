@@ -16,6 +16,7 @@ from render_jobs.images import write_exr
 from whacamole.body import BodyModel, BodyParams
 from whacamole.dataset import DatasetLayout, write_index, write_summary
 from whacamole.dataset.files import write_arrays, write_json
+from whacamole.dataset.splitting import refresh_splits
 from whacamole.labels import (
     FrameImages,
     LabelledPerson,
@@ -40,7 +41,8 @@ def write_dataset(root: Path) -> DatasetLayout:
         if name == "walk":
             _write(layout, "walk-01", labels, images, "plaza")
     body = {"name": model.name, "sha256": model.sha256}
-    write_index(layout, {"generator": "whacamole", "seed": 0, "body_model": body}, test_fraction=0.2)
+    write_index(layout, {"generator": "whacamole", "seed": 0, "body_model": body})
+    refresh_splits(layout, 0.2)
     return layout
 
 

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.ndimage import maximum_filter
 
 from whacamole.check.limits import Limits
 from whacamole.labels.arrays import AnyArray, Bools, Float64s, Floats, Integers
@@ -58,7 +59,8 @@ class PersonPixels:
         area: pixels in which the labelled body is the nearest one.
         stray: of those, how many show neither the person nor anything in front.
         own: of those, how many show the person.
-        sunk: of those, how many show something deeper than the body: the body is not where the label puts it.
+        sunk: of those, how many show something deeper than the body, there and in the pixels around: the body
+            is not where the label puts it. (At an edge of the body, the part behind may be seen.)
         hands: pixels of the hands among ``area``.
         hands_off: of those, how many stray or show a depth that is not the hand's.
     """
@@ -88,7 +90,8 @@ def person_pixels(
     deeper = shown.depth[body] - drawn.raster.depth[body]
     own = shown.mask[body] == track
     stray = ~own & (deeper > -limits.depth)
-    sunk = own & (deeper > limits.depth)
+    farthest = maximum_filter(drawn.raster.depth, 3)[body]
+    sunk = own & (shown.depth[body] > farthest + limits.depth)
     hand = is_hand[drawn.raster.triangle[body]]
     # Sleeves may cover a wrist, nothing covers fingers; another limb before the hand makes it no evidence.
     off = (own & (np.abs(deeper) > 1.5 * limits.depth) & (deeper > -5 * limits.depth)) | stray

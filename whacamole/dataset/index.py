@@ -1,4 +1,4 @@
-"""``dataset.json`` and ``splits/``: derived from the finished sequences, never a state of their own.
+"""``dataset.json``: derived from the finished sequences, never a state of its own.
 
 Whatever was killed, and whenever, writing the index again from the folders gives the same file.
 """
@@ -10,7 +10,6 @@ from typing import Any
 
 from whacamole.dataset.files import sha256_of, write_json
 from whacamole.dataset.layout import FORMAT_VERSION, DatasetLayout, SequenceLayout
-from whacamole.dataset.splits import write_splits
 from whacamole.errors import DatasetError
 
 __all__ = ["checksums_of", "read_json", "read_summary", "write_index", "write_summary"]
@@ -53,19 +52,17 @@ def read_summary(sequence: SequenceLayout) -> dict[str, Any]:
     return value
 
 
-def write_index(layout: DatasetLayout, facts: Mapping[str, Any], test_fraction: float) -> None:
-    """Write ``dataset.json`` and the splits from what is finished.
+def write_index(layout: DatasetLayout, facts: Mapping[str, Any]) -> None:
+    """Write ``dataset.json`` from what is finished.
 
     Args:
         facts: resolved recipe, versions and body model, placed before the list of sequences.
     """
-    entries, motions = [], []
+    entries = []
     for sequence_id in layout.finished():
         sequence = layout.sequence(sequence_id)
         summary = read_summary(sequence)
-        motions.append((sequence_id, str(summary["motion_id"])))
         checksums = summary.pop("checksums")
         labels = {name: digest for name, digest in checksums.items() if "/" not in name}
         entries.append({**summary, "checksums": {**labels, "sequence.json": sha256_of(sequence.summary)}})
-    write_splits(layout, motions, test_fraction)
     write_json(layout.index, {"format_version": FORMAT_VERSION, **facts, "sequences": entries})

@@ -70,7 +70,7 @@ def produce(
         started = time.monotonic()
         failures = _make_all(worklist, layout, means, quiet)
         with index_lock(layout):
-            write_index(layout, {**facts_of_dataset, "recipe": settled.save_as_dict()}, settled.test_fraction)
+            write_index(layout, {**facts_of_dataset, "recipe": settled.save_as_dict()})
             sides = refresh_splits(layout, settled.test_fraction)  # companions counted
             if layout.finished():
                 numbers = collect(open_dataset(layout.root))

@@ -21,6 +21,7 @@ from whacamole.body import BodyModel, BodyParams
 from whacamole.cli.baseline import app
 from whacamole.dataset import DatasetLayout, open_dataset, write_index, write_summary
 from whacamole.dataset.files import write_arrays
+from whacamole.dataset.splitting import refresh_splits
 from whacamole.errors import BaselineError
 from whacamole.labels import LabelledPerson
 from whacamole.labels.camera import camera_arrays
@@ -45,7 +46,8 @@ def dataset(scene: TrueScene, tmp_path_factory: pytest.TempPathFactory) -> Path:
     write_arrays(sequence.people, arrays)
     facts = {"motion_id": "somebody", "frames": scene.num_frames, "width": 640, "height": 360, "passes": []}
     write_summary(sequence, facts)
-    write_index(layout, {}, 1.0)
+    write_index(layout, {})
+    refresh_splits(layout, 1.0)
     return root
 
 

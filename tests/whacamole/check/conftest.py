@@ -13,6 +13,7 @@ from render_jobs.passes import PASSES
 from whacamole.body import BodyModel, BodyParams
 from whacamole.dataset import DatasetLayout, SequenceLayout, write_index, write_summary
 from whacamole.dataset.files import write_arrays, write_json
+from whacamole.dataset.splitting import refresh_splits
 from whacamole.labels import FrameImages, LabelledPerson, RasterMesh, label_sequence, rasterize
 from whacamole.labels.clipping import project_points
 from whacamole.labels.people import to_camera
@@ -156,7 +157,8 @@ def sound(tmp_path_factory) -> Path:
     shutil.copytree(layout.sequence("stroll-00").folder, layout.sequence("stroll-01").folder)
     for sequence_id in ("stroll-00", "stroll-01"):
         write_summary(layout.sequence(sequence_id), facts(sequence_id, "stroll"))
-    write_index(layout, {}, 0.0)
+    write_index(layout, {})
+    refresh_splits(layout, 0.0)
     return layout.root
 
 
@@ -165,5 +167,6 @@ def dataset(sound: Path, tmp_path: Path) -> Path:
     """A copy to spoil; its second sequence is left out, for speed."""
     root = tmp_path / "data"
     shutil.copytree(sound, root, ignore=shutil.ignore_patterns("stroll-01"))
-    write_index(DatasetLayout(root), {}, 0.0)
+    write_index(DatasetLayout(root), {})
+    refresh_splits(DatasetLayout(root), 0.0)
     return root

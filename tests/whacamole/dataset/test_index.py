@@ -1,4 +1,4 @@
-"""dataset.json and the splits follow from the finished sequences alone."""
+"""dataset.json follows from the finished sequences alone, and the side of a motion from its id."""
 
 from pathlib import Path
 
@@ -17,33 +17,6 @@ def _finish(layout: DatasetLayout, sequence_id: str, motion_id: str) -> None:
     write_summary(sequence, {"id": sequence_id, "motion_id": motion_id})
 
 
-def _lines(path: Path) -> list[str]:
-    return path.read_text(encoding="utf-8").splitlines()
-
-
-def test_all_shots_of_a_motion_are_on_one_side(tmp_path: Path) -> None:
-    layout = DatasetLayout(tmp_path)
-    motions = [f"motion{index}" for index in range(12)]
-    for motion in motions:
-        for shot in range(2):
-            _finish(layout, f"{motion}-{shot:02d}", motion)
-    write_index(layout, {}, 0.3)
-    train, test = (_lines(layout.splits / f"{side}.txt") for side in ("train", "test"))
-    assert sorted(train + test) == layout.finished()
-    assert not {name[:-3] for name in train} & {name[:-3] for name in test}
-
-
-def test_a_new_sequence_moves_no_other(tmp_path: Path) -> None:
-    layout = DatasetLayout(tmp_path)
-    for index in range(20):
-        _finish(layout, f"m{index}-00", f"m{index}")
-    write_index(layout, {}, 0.2)
-    before = set(_lines(layout.splits / "test.txt"))
-    _finish(layout, "late-00", "late")
-    write_index(layout, {}, 0.2)
-    assert set(_lines(layout.splits / "test.txt")) - {"late-00"} == before
-
-
 def test_the_share_of_the_test_split_is_what_was_asked() -> None:
     sides = [side_of(f"motion {index}", 0.2) for index in range(20000)]
     assert abs(sides.count("test") / len(sides) - 0.2) < 0.01  # 3.5 standard deviations
@@ -52,7 +25,7 @@ def test_the_share_of_the_test_split_is_what_was_asked() -> None:
 def test_checksums_lead_from_the_index_to_every_file(tmp_path: Path) -> None:
     layout = DatasetLayout(tmp_path)
     _finish(layout, "walk-00", "walk")
-    write_index(layout, {"seed": 3}, 0.2)
+    write_index(layout, {"seed": 3})
     index = read_json(layout.index)
     assert index["seed"] == 3
     sequence = layout.sequence("walk-00")
@@ -67,7 +40,7 @@ def test_the_index_is_the_same_whatever_the_order_of_making(tmp_path: Path) -> N
         layout = DatasetLayout(tmp_path / "".join(order))
         for name in order:
             _finish(layout, f"{name}-00", name)
-        write_index(layout, {}, 0.5)
+        write_index(layout, {})
         written.append(layout.index.read_bytes())
     assert written[0] == written[1]
 

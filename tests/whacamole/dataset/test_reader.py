@@ -33,7 +33,10 @@ def data(tmp_path: Path) -> Dataset:
             "image_format": "png",
         }
         write_summary(sequence, facts)
-    write_index(layout, {"seed": 1}, test_fraction=0.0)
+    write_index(layout, {"seed": 1})
+    layout.splits.mkdir()
+    (layout.splits / "train.txt").write_text("run-00\nwalk-00\n", encoding="utf-8")
+    (layout.splits / "test.txt").write_text("", encoding="utf-8")
     return whacamole.open(tmp_path)
 
 

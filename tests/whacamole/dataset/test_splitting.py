@@ -69,7 +69,8 @@ def layout(tmp_path: Path) -> DatasetLayout:
     found = DatasetLayout(tmp_path)
     for number in range(12):
         _finish(found, f"m{number}-00", [f"m{number}"], f"stage{number // 2}", [number // 3])
-    write_index(found, {}, 0.2)
+    write_index(found, {})
+    refresh_splits(found, 0.2)
     return found
 
 
