@@ -129,7 +129,10 @@ def export_dataset(
         raise DatasetError(f"{out}: already there; choose another --out or delete it")
     part = out.with_name(f".{out.name}.part")
     shutil.rmtree(part, ignore_errors=True)
-    part.mkdir(parents=True)
+    try:
+        part.mkdir(parents=True)
+    except OSError as error:
+        raise DatasetError(f"{out}: cannot be made ({error.strerror}); choose another --out") from error
     try:
         notes = exporter.write(Source(chosen, split or "all", every, out), part)
         part.rename(out)

@@ -152,10 +152,12 @@ def test_the_same_dataset_gives_the_same_bytes(name: str, data: Dataset, tmp_pat
 
 def test_what_cannot_be_exported_is_refused_before_it_begins(data: Dataset, tmp_path: Path) -> None:
     (tmp_path / "there").mkdir()
+    (tmp_path / "file").write_bytes(b"")
     for message, error, options in (
         ("no such format; choose from humandata", RecipeError, {"to": "fbx", "out": tmp_path / "a"}),
         ("whole sequences", RecipeError, {"to": "mp4", "out": tmp_path / "a", "every": 2}),
         ("already there", DatasetError, {"to": "tum", "out": tmp_path / "there"}),
+        ("cannot be made", DatasetError, {"to": "tum", "out": tmp_path / "file" / "out"}),
         ("no split 'val'", DatasetError, {"to": "tum", "out": tmp_path / "a", "split": "val"}),
     ):
         with pytest.raises(error, match=message):
