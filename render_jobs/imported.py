@@ -47,6 +47,7 @@ class SceneRecord(SceneValue):
     floor: tuple[str, ...]
     lights: tuple[Light, ...]
     environment: Environment | None
+    exposure: float
     notes: tuple[str, ...]
 
 
@@ -60,6 +61,7 @@ class ImportedScene:
         lights: suns and lamps.
         environment: the surroundings, or None where the file has none to speak of.
         notes: what of the file could not be taken over, a line each.
+        exposure: stops that the file asks for.
     """
 
     meshes: tuple[Mesh, ...]
@@ -67,6 +69,7 @@ class ImportedScene:
     lights: tuple[Light, ...]
     environment: Environment | None
     notes: tuple[str, ...] = ()
+    exposure: float = 0.0
 
     @property
     def lit(self) -> bool:
@@ -88,6 +91,7 @@ class ImportedScene:
             floor=tuple(sorted(self.floor)),
             lights=self.lights,
             environment=environment,
+            exposure=self.exposure,
             notes=self.notes,
         )
         text = json.dumps(record.model_dump(mode="json"), indent=1, ensure_ascii=False)
@@ -106,7 +110,7 @@ class ImportedScene:
             raise RenderJobError(f"{folder}: no imported scene; delete the folder and start again") from error
         meshes = tuple(read_mesh(folder, mesh) for mesh in record.meshes)
         environment = None if record.environment is None else with_folder(record.environment, folder)
-        return cls(meshes, frozenset(record.floor), record.lights, environment, record.notes)
+        return cls(meshes, frozenset(record.floor), record.lights, environment, record.notes, record.exposure)
 
 
 def import_scene(file: Path, folder: Path, timeout: float = IMPORT_TIMEOUT_S) -> ImportedScene:

@@ -49,6 +49,7 @@ def read(file: Path, scratch: Path) -> ImportedScene:
         tuple(_lights(unit)),
         read_world(scene.world, images),
         tuple(images.notes),
+        float(scene.view_settings.exposure) if file.suffix == ".blend" else 0.0,
     )
 
 

@@ -42,6 +42,7 @@ class OwnStage:
         name: of the file, without its suffix.
         meshes, lights, environment: what is seen; no environment if the file has none.
         lit: whether the file brings light.
+        exposure: stops that suit the file's own light.
         ground, solids: what the survey found.
         notes: what of the file could not be taken over.
     """
@@ -51,6 +52,7 @@ class OwnStage:
     lights: tuple[Sun | Lamp, ...]
     environment: Environment | None
     lit: bool
+    exposure: float
     ground: Ground
     solids: Solids
     notes: tuple[str, ...]
@@ -61,7 +63,7 @@ class OwnStage:
         world = World(obstacles=self.solids.boxes(low, high))
         if self.lit:
             environment = self.environment or Environment(color=(0.0, 0.0, 0.0))
-            return Stage(self.name, self.meshes, self.lights, environment, 0.0, world)
+            return Stage(self.name, self.meshes, self.lights, environment, self.exposure, world)
         sun, sky = daylight(rng, (20.0, 65.0))
         stage = Stage(self.name, self.meshes, (sun,), sky, 0.6, world)
         return lit_by(stage, hdris, rng) if hdris else stage
@@ -142,6 +144,7 @@ def _read(file: Path, folder: Path) -> OwnStage:
         lights=tuple(_light_lowered(light, height) for light in scene.lights),
         environment=scene.environment,
         lit=scene.lit,
+        exposure=scene.exposure,
         ground=ground,
         solids=solids,
         notes=scene.notes,
