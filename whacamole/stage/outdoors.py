@@ -71,7 +71,7 @@ def courtyard(rng: np.random.Generator, paths: Paths, folder: Path | None) -> St
         strength=1.0,
         backdrop=(0.72, 0.76, 0.82),
     )
-    return build.stage("courtyard", (), light)
+    return build.stage("courtyard", (), light, exposure=0.5)
 
 
 def rooftop(rng: np.random.Generator, paths: Paths, folder: Path | None) -> Stage:
@@ -94,7 +94,7 @@ def rooftop(rng: np.random.Generator, paths: Paths, folder: Path | None) -> Stag
         rotation=float(rng.uniform(0.0, 360.0)),
         strength=1.2,
     )
-    return build.stage("rooftop", (), light, exposure=0.3)
+    return build.stage("rooftop", (), light, exposure=1.0)
 
 
 def night_street(rng: np.random.Generator, paths: Paths, folder: Path | None) -> Stage:
@@ -105,7 +105,7 @@ def night_street(rng: np.random.Generator, paths: Paths, folder: Path | None) ->
     furnish(build, floor, STREET_FURNITURE, int(rng.integers(8, 14)), _masonry(build, rng), rng)
     warm = (1.0, float(rng.uniform(0.84, 0.93)), float(rng.uniform(0.66, 0.8)))
     night = Environment(kind="color", color=(0.10, 0.13, 0.22), strength=0.6)
-    return build.stage("night-street", _street_lamps(build, floor, warm, rng), night, exposure=0.6)
+    return build.stage("night-street", _street_lamps(build, floor, warm, rng), night, exposure=0.3)
 
 
 def _street_lamps(

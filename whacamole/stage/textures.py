@@ -127,20 +127,29 @@ def plaster(rng: np.random.Generator, size: int = 512) -> Image:
     hue = rng.uniform(0.0, 1.0)
     color = rng.uniform(0.6, 0.8) * (1.0 + 0.09 * np.cos(2.0 * np.pi * (hue + np.array([0.0, 0.33, 0.67]))))
     color *= np.array([1.05, 1.0, 0.92])  # paints are warm more often than not
-    return _tinted(rng, size, (color[0], color[1], color[2]), 0.045)
+    return _tinted(rng, size, (color[0], color[1], color[2]), 0.08)
+
+
+BOARDS = 3
+"""Boards end to end in a plank of the texture."""
 
 
 def wood(rng: np.random.Generator, size: int = 512) -> Image:
-    """Planks along x with grain."""
+    """Planks along x with grain, each of boards of its own tone that meet at a joint."""
     planks = int(rng.integers(4, 8))
     y, x = np.mgrid[0:size, 0:size] / size
     plank = np.floor(y * planks).astype(np.int64)
     warp = 0.04 * noise(rng, size, 2.0)
     rings = np.sin(2.0 * np.pi * (y * planks * 6 + warp * 9 + np.sin(2 * np.pi * x) * 0.3 + plank * 0.37))
-    tone = rng.normal(1.0, 0.10, planks)[plank] * (1.0 + 0.10 * rings + 0.06 * noise(rng, size, 0.5, 24.0))
+    along = (x * BOARDS + rng.uniform(0.0, 1.0, planks)[plank]) % BOARDS
+    board = plank * BOARDS + np.floor(along).astype(np.int64)
+    grain = 0.10 * rings + 0.10 * noise(rng, size, 0.5, 24.0)
+    tone = rng.normal(1.0, 0.13, planks * BOARDS)[board] * (1.0 + grain)
     base = np.array([0.48, 0.34, 0.21]) * rng.uniform(0.7, 1.25)
     gap = np.minimum(y * planks % 1.0, 1.0 - y * planks % 1.0) * size / planks
-    return _clipped(base * (tone * (0.4 + 0.6 * np.clip(gap / 2.0, 0.0, 1.0)))[..., None])
+    joint = np.minimum(along % 1.0, 1.0 - along % 1.0) * size / BOARDS
+    edge = np.clip(np.minimum(gap, joint) / 2.0, 0.0, 1.0)
+    return _clipped(base * (tone * (0.4 + 0.6 * edge))[..., None])
 
 
 def facade(rng: np.random.Generator, size: int = 512) -> Image:
