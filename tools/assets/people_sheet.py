@@ -46,13 +46,13 @@ HARD_TURNS_DEG: Final = (35.0, 150.0, -60.0)
 """… and those in hard poses, row by row, by this much."""
 
 
-def moments(rng: np.random.Generator) -> Iterator[dict[str, NDArray[np.float64]]]:
+def moments(rng: np.random.Generator, standing_share: float) -> Iterator[dict[str, NDArray[np.float64]]]:
     """Body poses ``(21, 3)`` and root orientations ``(3,)``: standing at ease, or one frame of a motion."""
     motions: list[Motion] = [read_motion(file) for file in find_motions(embedded_motions())]
     while True:
         pose = np.zeros((21, 3))
         orient = UPRIGHT
-        if rng.random() < STANDING_SHARE:
+        if rng.random() < standing_share:
             for side, sign in (("left", -1.0), ("right", 1.0)):
                 pose[JOINT_INDEX[f"{side}_shoulder"] - 1] = [0, 0.1 * sign, sign * rng.uniform(1.05, 1.2)]
                 pose[JOINT_INDEX[f"{side}_elbow"] - 1] = [0, sign * rng.uniform(0.1, 0.4), 0]
@@ -104,14 +104,27 @@ def person_meshes(
         middle = (posed.vertices[0].min(axis=0) + posed.vertices[0].max(axis=0)) / 2
     params = replace(params, transl=params.transl + cell - middle)
     meshes = dress(member, body, params, textures=textures, name=name, subdivision=1)
-    return [replace(mesh, vertices=mesh.vertices[0]) for mesh in meshes]
+    still = [replace(mesh, vertices=mesh.vertices[0]) for mesh in meshes]
+    return [part for mesh in still if (part := _within(mesh, cell, look))] if look == "face" else still
+
+
+def _within(mesh: Mesh, cell: NDArray[np.float64], look: str) -> Mesh | None:
+    """What of a mesh lies in its cell: in the sheet of faces bodies would cover their neighbours."""
+    width, height = CELL_M[look]
+    inside = (np.abs(mesh.vertices - cell)[:, [0, 2]] < np.array([width, height]) / 2).all(axis=1)
+    corners = np.where(mesh.faces < 0, mesh.faces[:, :1], mesh.faces)
+    chosen = inside[corners].all(axis=1)
+    if not chosen.any():
+        return None
+    uv = None if mesh.uv is None else mesh.uv[chosen]
+    return replace(mesh, faces=mesh.faces[chosen], uv=uv)
 
 
 def sheet_job(arguments: argparse.Namespace, textures: Path) -> RenderJob:
     """All people in one scene, side by side and one above the other, seen by one far camera."""
     body = BodyModel.embedded()
     rng = np.random.default_rng(arguments.seed)
-    poses = hard_moments() if arguments.hard else moments(rng)
+    poses = hard_moments() if arguments.hard else moments(rng, 1.0 if arguments.faces else STANDING_SHARE)
     rows = -(-arguments.count // arguments.columns)
     look = "face" if arguments.faces else "body"
     width, height = CELL_M[look]
@@ -134,8 +147,8 @@ def sheet_job(arguments: argparse.Namespace, textures: Path) -> RenderJob:
     return RenderJob(
         camera=_camera(*pixels, scale * DISTANCE_M),
         meshes=tuple(meshes),
-        lights=(Sun(direction=(0.4, 1.0, -0.9), strength=2.0, angle=12.0),),
-        environment=Environment(kind="hdri", hdri="studio", strength=0.9, backdrop=(0.62, 0.66, 0.70)),
+        lights=(Sun(direction=(0.4, 1.0, -0.9), strength=1.4, angle=12.0),),
+        environment=Environment(kind="hdri", hdri="studio", strength=0.75, backdrop=(0.62, 0.66, 0.70)),
         quality=Quality(name="sheet", samples=arguments.samples),
         passes=("rgb",),
         image_format="png",

@@ -10,18 +10,19 @@ Colour = tuple[float, float, float]
 
 SKIN_TONES: Final = np.array(
     [
-        (233, 195, 175),
-        (224, 181, 156),
-        (211, 163, 132),
-        (191, 141, 109),
-        (160, 113, 83),
-        (126, 85, 61),
-        (95, 63, 46),
-        (72, 48, 37),
+        (217, 178, 156),
+        (209, 167, 141),
+        (198, 152, 121),
+        (180, 133, 102),
+        (152, 108, 80),
+        (122, 83, 60),
+        (96, 65, 48),
+        (77, 53, 42),
     ],
     dtype=np.float64,
 )
-"""Skin from the lightest to the darkest, sRGB 0..255, evenly spaced for the eye."""
+"""Skin from the lightest to the darkest, sRGB 0..255, evenly spaced for the eye. These are colours of the
+surface, not of a photograph: even the fairest skin returns at most two thirds of the red light."""
 
 TONE_RANGE: Final = {"african": (0.55, 1.0), "asian": (0.1, 0.6), "caucasian": (0.0, 0.45)}
 """Part of the scale (0 lightest, 1 darkest) that people of an origin span; together they cover all of it."""
@@ -32,11 +33,11 @@ HAIR_COLOURS: Final[dict[str, Colour]] = {
     "brown": (0.27, 0.18, 0.12),
     "light brown": (0.42, 0.30, 0.19),
     "auburn": (0.36, 0.16, 0.09),
-    "red": (0.55, 0.25, 0.12),
+    "red": (0.44, 0.20, 0.10),
     "dark blond": (0.53, 0.42, 0.28),
     "blond": (0.74, 0.61, 0.41),
     "grey": (0.50, 0.49, 0.48),
-    "white": (0.78, 0.77, 0.75),
+    "white": (0.66, 0.65, 0.62),
 }
 
 EYE_COLOURS: Final[dict[str, Colour]] = {
@@ -46,7 +47,7 @@ EYE_COLOURS: Final[dict[str, Colour]] = {
     "hazel": (0.38, 0.32, 0.15),
     "green": (0.30, 0.40, 0.26),
     "grey": (0.42, 0.47, 0.50),
-    "blue": (0.27, 0.42, 0.58),
+    "blue": (0.30, 0.40, 0.49),
 }
 
 CLOTH_COLOURS: Final[tuple[Colour, ...]] = (
@@ -89,7 +90,13 @@ def luminance(pixels: Pixels) -> Pixels:
     return light
 
 
-def dye(pixels: Pixels, colour: Colour, contrast: float = 1.0, level: float | None = None) -> Pixels:
+def dye(
+    pixels: Pixels,
+    colour: Colour,
+    contrast: float = 1.0,
+    level: float | None = None,
+    brightest: float = 6.0,
+) -> Pixels:
     """Cloth or hair of one colour: keeps the folds and strands, gives up the hue.
 
     Args:
@@ -97,10 +104,11 @@ def dye(pixels: Pixels, colour: Colour, contrast: float = 1.0, level: float | No
         colour: sRGB 0..1 that the middle brightness becomes.
         contrast: how much of the picture's own light and dark stays.
         level: the brightness that counts as the middle; the median if None.
+        brightest: lights count as no more than this many times the middle.
     """
     light = luminance(pixels)
     middle = float(np.median(light)) if level is None else level
-    ratio = np.power(np.clip(light / max(middle, 0.02), 0.05, 6.0), np.float32(contrast))
+    ratio = np.power(np.clip(light / max(middle, 0.02), 0.05, brightest), np.float32(contrast))
     return np.clip(ratio[..., None] * np.array(colour, dtype=np.float32) * 255.0, 0, 255)
 
 

@@ -86,8 +86,13 @@ def _hair(item: Item, pixels: Pixels, colour: str) -> Pixels:
     level = float(np.median(palette.luminance(pixels)[solid])) if solid.any() else 0.5
     red, green, blue = palette.HAIR_COLOURS[colour]
     shade = 0.7 if item.slot == "brows" else 1.0
+    # The pictures are white where they are cut away, and that shows in the strands beside.
     strands = palette.dye(
-        pixels[..., :3], (red * shade, green * shade, blue * shade), contrast=0.8, level=level
+        pixels[..., :3],
+        (red * shade, green * shade, blue * shade),
+        contrast=0.7,
+        level=level,
+        brightest=2.0,
     )
     return np.concatenate([strands, pixels[..., 3:]], axis=2)
 
