@@ -36,25 +36,31 @@ MOTIONS: Final = ("walk", "walk_turn", "run", "dance_a", "punch", "jump")
 
 SEEN: Final = 0.8
 NEAR: Final = 0.2
-SAME_PERSON: Final = 0.3
-"""Intersection over union of the boxes round the eight points, label against detector."""
-
 LANDMARKS: Final = {
     "left_shoulder": 11, "right_shoulder": 12, "left_hip": 23, "right_hip": 24,
     "left_knee": 25, "right_knee": 26, "left_ankle": 27, "right_ankle": 28,
 }  # fmt: skip
 SKINS: Final = ((0.33, "light"), (0.66, "medium"), (1.01, "dark"))
 
+GROUPS: Final = ("stage", "skin", "motion", "framing")
+
 Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class Shown:
-    """One person in one frame: which group, whether found, which of the eight points are near."""
+    """One person in one frame.
+
+    Attributes:
+        stage, skin, motion, framing: the groups this counts in.
+        found: a detection is centred on the person.
+        error: distances of the points in the image [torsos], infinite where none were read.
+    """
 
     stage: str
     skin: str
     motion: str
+    framing: str
     found: bool
     error: tuple[float, ...]
 
@@ -84,24 +90,34 @@ def show(order: SequenceOrder, stage: str, pose: BlazePose, failures: Path) -> I
     joints = [JOINT_INDEX[name] for name in LANDMARKS]
     for frame in range(len(camera["K"])):
         image = sequence.rgb(frame)
-        readings = [r for region in pose.find(image) if (r := pose.read(image, region)) is not None]
+        regions = pose.find(image)
+        readings = [reading for region in regions if (reading := pose.read(image, region)) is not None]
         for number, performer in enumerate(take.performers):
-            if people["visible_fraction"][number, frame] <= SEEN:
+            inside = people["joint_visibility"][number, frame, joints] > 0
+            if people["visible_fraction"][number, frame] <= SEEN or not inside.any():
                 continue
             labels = people["joints_image"][number, frame, joints].astype(np.float64)
             torso = torso_pixels(people["joints_camera"][number, frame], camera["K"][frame])
-            reading = same_person(labels, readings)
-            error: tuple[float, ...] = ()
-            if reading is not None:
-                points = reading.pixels[list(LANDMARKS.values())]
-                inside = people["joint_visibility"][number, frame, joints] > 0
-                error = tuple(np.linalg.norm(points - labels, axis=1)[inside] / torso)
+            left, top, right, bottom = people["bbox_visible_xyxy"][number, frame]
+            error = best_reading(labels, inside, readings) / torso
+            found = bool(error.max() < np.inf) or any(
+                left <= region.x <= right and top <= region.y <= bottom for region in regions
+            )
             tone = performer.role.member.tone
             skin = next(name for limit, name in SKINS if tone < limit)
-            if reading is None or any(e > NEAR for e in error):
-                name = f"{stage}-{order.sequence_id}-{frame}-{'off' if reading else 'missed'}.png"
-                picture(image, labels, reading, failures / name)
-            yield Shown(stage, skin, take.motion.id, reading is not None, error)
+            if (error > NEAR).any():
+                name = f"{stage}-{order.sequence_id}-{frame}-{'off' if found else 'missed'}.png"
+                picture(image, labels, readings, failures / name)
+            framing = "whole in the image" if inside.all() else "cut by its edge"
+            yield Shown(stage, skin, take.motion.id, framing, found, tuple(error) if found else ())
+
+
+def best_reading(labels: Floats, inside: NDArray[np.bool_], readings: list[Reading]) -> Floats:
+    """Distances [px] of the points in the image to the reading that fits best; infinite without any."""
+    points = [reading.pixels[list(LANDMARKS.values())] for reading in readings]
+    errors = [np.linalg.norm(found - labels, axis=1)[inside] for found in points]
+    nothing = np.full(int(inside.sum()), np.inf)
+    return min(errors, key=lambda error: float(np.median(error)), default=nothing)
 
 
 def torso_pixels(joints: Floats, K: Floats) -> float:
@@ -113,26 +129,12 @@ def torso_pixels(joints: Floats, K: Floats) -> float:
     return float(np.linalg.norm(shoulders - hips) * K[0, 0] / ((shoulders + hips)[2] / 2))
 
 
-def same_person(labels: Floats, readings: list[Reading]) -> Reading | None:
-    """The reading whose box of points overlaps that of the labels most, if it does so enough."""
-
-    def overlap(reading: Reading) -> float:
-        points = reading.pixels[list(LANDMARKS.values())]
-        low = np.maximum(points.min(axis=0), labels.min(axis=0))
-        high = np.minimum(points.max(axis=0), labels.max(axis=0))
-        common = float(np.prod(np.clip(high - low, 0, None)))
-        return common / (float(np.prod(np.ptp(points, axis=0)) + np.prod(np.ptp(labels, axis=0))) - common)
-
-    best = max(readings, key=overlap, default=None)
-    return best if best is not None and overlap(best) >= SAME_PERSON else None
-
-
-def picture(image: NDArray[np.uint8], labels: Floats, reading: Reading | None, path: Path) -> None:
-    """The frame with the labels in green and what was found in red."""
+def picture(image: NDArray[np.uint8], labels: Floats, readings: list[Reading], path: Path) -> None:
+    """The frame with the labels in green and what was read in red."""
     drawn = Image.fromarray(image)
     pen = ImageDraw.Draw(drawn)
-    found = [] if reading is None else list(reading.pixels[list(LANDMARKS.values())])
-    for points, colour in ((labels, (0, 255, 0)), (found, (255, 0, 0))):
+    read = [point for reading in readings for point in reading.pixels[list(LANDMARKS.values())]]
+    for points, colour in ((labels, (0, 255, 0)), (read, (255, 0, 0))):
         for x, y in points:
             pen.ellipse((x - 2, y - 2, x + 2, y + 2), fill=colour)
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -144,7 +146,7 @@ def table(shown: list[Shown]) -> None:
     print("| group | people | found % | points near % | median error, torsos |\n|---|---|---|---|---|")
     groups: dict[str, list[Shown]] = defaultdict(list)
     for one in shown:
-        for name in ("all", f"stage {one.stage}", f"skin {one.skin}", f"motion {one.motion}"):
+        for name in ("all", *(f"{kind} {getattr(one, kind)}" for kind in GROUPS)):
             groups[name].append(one)
     for name, members in sorted(groups.items()):
         errors = np.array([e for one in members for e in one.error])
