@@ -41,6 +41,8 @@ PARTS = {
 NOISE = {f"steady, noise x {factor}": ("--mode", "steady", "--noise", factor) for factor in (0, 1, 2)}
 FOCALS = {f"focal {source}": ("--focal", source) for source in ("dummy", "diagonal", "24mm", "given")}
 
+STEADY_FOCALS = {label: ("--mode", "steady", *options) for label, options in FOCALS.items()}
+
 
 def compared(
     data: Path,
@@ -67,7 +69,7 @@ def oracle(data: Path, work: Path) -> None:
     for title, runs, metrics in (
         ("parts, from labels with noise", PARTS, WORLD),
         ("noise", NOISE, WORLD),
-        ("focal lengths, from labels with noise", FOCALS, INTRINSICS),
+        ("focal lengths, from labels with noise", STEADY_FOCALS, INTRINSICS),
     ):
         every = {f"oracle {label}": (*ORACLE, *options) for label, options in runs.items()}
         compared(data, work, every, metrics, title)
