@@ -74,16 +74,17 @@ def attempt(order: SequenceOrder, limits: Limits, stop: threading.Event | None =
             failure_note(order).unlink(missing_ok=True)
             write_json(work / "order.json", order.as_dict())
         _run_worker(order, limits, stop)
-    except OSError as error:
-        if error.errno in DISK_FULL:
+    except (OSError, AttemptError) as error:
+        if is_finished(order.root, order.sequence_id):  # by another run, which took its work folder away
+            return False
+        if isinstance(error, OSError) and error.errno in DISK_FULL:
             raise _disk_full(order, limits) from error
-        raise AttemptError(f"{order.sequence_id}: {error}") from error
-    except AttemptError as error:
+        failure = error if isinstance(error, AttemptError) else AttemptError(f"{order.sequence_id}: {error}")
         with contextlib.suppress(OSError):
             number = len(attempts_so_far(work)) + 1
             facts = {"attempt": number, "host": host_name(), "began": began, "seconds": time.time() - began}
-            note_attempt(work, {**facts, "error": str(error)})
-        raise
+            note_attempt(work, {**facts, "error": str(failure)})
+        raise failure from error
     return True
 
 
