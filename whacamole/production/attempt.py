@@ -84,6 +84,8 @@ def attempt(order: SequenceOrder, limits: Limits, stop: threading.Event | None =
             number = len(attempts_so_far(work)) + 1
             facts = {"attempt": number, "host": host_name(), "began": began, "seconds": time.time() - began}
             note_attempt(work, {**facts, "error": str(failure)})
+        if failure is error:
+            raise  # never its own cause: Dask follows causes to their end
         raise failure from error
     return True
 
