@@ -103,6 +103,37 @@ def test_opencv_says_when_there_is_nothing_to_follow() -> None:
         OpenCVOdometry().track(Scene(blank, np.tile(np.diag([60.0, 60.0, 1.0]), (6, 1, 1))))
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_a_camera_over_a_floor_is_not_taken_for_its_twin(seed: int) -> None:
+    """Two views of a plane allow two motions; other frames tell which it was."""
+    cv2 = pytest.importorskip("cv2")
+    from whacamole.baseline.odometry.features import PointTracks
+    from whacamole.baseline.odometry.mapping import Mapper
+
+    rng = np.random.default_rng(seed)
+    cv2.setRNGSeed(0)
+    T, K = 24, np.array([[400.0, 0.0, 320.0], [0.0, 400.0, 180.0], [0.0, 0.0, 1.0]])
+    floor = np.concatenate([rng.uniform(-2.0, 2.0, size=(300, 2)), np.zeros((300, 1))], axis=1)
+    share = np.linspace(0.0, 1.0, T)
+    angle = np.radians(150.0) + 0.15 * share**2
+    turn = Rotation.from_rotvec(np.stack([angle, 0.1 * share, 0.0 * share], axis=1)).as_matrix()
+    center = np.stack([0.8 * np.sin(share), 1.2 - 0.5 * share, 2.2 + 0.4 * share**2], axis=1)
+    poses = rigid(turn, center)
+    local = np.einsum("tij,tnj->tni", np.swapaxes(turn, 1, 2), floor[None] - center[:, None])
+    pixels = local[..., :2] / local[..., 2:] * 400.0 + K[:2, 2]
+    pixels += 0.3 * rng.normal(size=pixels.shape)
+    pixels[(local[..., 2] < 0.1) | (pixels < 0.0).any(-1) | (pixels > [640.0, 360.0]).any(-1)] = np.nan
+    mapper = Mapper(cv2, PointTracks(pixels.astype(np.float32)), np.tile(K, (T, 1, 1)))
+    assert mapper.begin(2, 18)
+    mapper.grow()
+    found, valid = mapper.poses()
+    assert valid.all()
+    relative = inverse(found[0]) @ found
+    truth = inverse(poses[0]) @ poses
+    apart = Rotation.from_matrix(np.swapaxes(relative[:, :3, :3], 1, 2) @ truth[:, :3, :3]).magnitude()
+    assert np.degrees(apart).max() < 1.5
+
+
 def test_bundle_adjustment_finds_cameras_and_points() -> None:
     rng = np.random.default_rng(0)
     points = rng.normal(size=(60, 3)) + np.array([0.0, 0.0, 8.0])
