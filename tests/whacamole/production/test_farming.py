@@ -4,6 +4,7 @@ import fcntl
 import json
 import os
 import shutil
+import sys
 import time
 from dataclasses import replace
 from pathlib import Path
@@ -15,7 +16,8 @@ from render_jobs.errors import PostponedError
 from whacamole.dataset import DatasetLayout, SequenceLayout
 from whacamole.dataset.files import write_json
 from whacamole.errors import DatasetError, RecipeError
-from whacamole.production.means import Shard
+from whacamole.production.attempt import AttemptError, attempt
+from whacamole.production.means import Limits, Shard
 from whacamole.production.opening import open_dataset_for
 from whacamole.production.place import attempts_so_far, make_in_place, note_attempt
 from whacamole.production.pulse import Heart, RunRecord, live_runs
@@ -180,3 +182,31 @@ def test_status_tells_who_is_at_what_and_who_has_died(tmp_path: Path) -> None:
     assert f"{second}: rendering, 4 of 10 frames; nobody is at it" in text
     assert f"{third}: failed: {third}: no camera" in text
     assert json.loads(json.dumps(state.as_dict()))["begun"][first]["pid"] == os.getpid()
+
+
+def _begun(worklist: Worklist, tmp_path: Path) -> SequenceOrder:
+    layout = DatasetLayout(tmp_path / "data")
+    open_dataset_for(RECIPE, layout, engine_is_ours=False)
+    return replace(worklist.orders[0], root=layout.root)
+
+
+def test_a_failed_attempt_is_recorded_and_its_causes_end(worklist: Worklist, tmp_path: Path) -> None:
+    order = _begun(worklist, tmp_path)
+    with pytest.raises(AttemptError, match="ended with status 3") as caught:
+        attempt(order, Limits(worker=(sys.executable, "-c", "raise SystemExit(3)")))
+    causes, error = [], caught.value.__cause__
+    while error is not None and len(causes) < 10:  # Dask follows them without a limit
+        causes.append(error)
+        error = error.__cause__
+    assert len(causes) < 10
+    (record,) = attempts_so_far(DatasetLayout(order.root).work_of(order.sequence_id))
+    assert record["attempt"] == 1
+    assert "ended with status 3" in record["error"]
+
+
+def test_what_another_run_has_finished_meanwhile_is_no_failure(worklist: Worklist, tmp_path: Path) -> None:
+    order = _begun(worklist, tmp_path)
+    summary = DatasetLayout(order.root).sequence(order.sequence_id).summary
+    summary.parent.mkdir()
+    code = f"open({str(summary)!r}, 'w').close(); raise SystemExit(3)"
+    assert attempt(order, Limits(worker=(sys.executable, "-c", code))) is False
