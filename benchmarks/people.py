@@ -23,6 +23,7 @@ from whacamole.body import BodyModel
 from whacamole.motion import embedded_motions, read_motion
 from whacamole.production.filming import plan_camera
 from whacamole.recipe import Recipe
+from whacamole.stage import Places
 from whacamole.take import Take, stage_take
 from whacamole.wardrobe.palette import skin_tone
 
@@ -41,7 +42,7 @@ def take_of(motion: str, stage: str, frames: int, textures: Path) -> Take:
     """A take as ``whacamole render`` builds it."""
     return stage_take(
         read_motion(embedded_motions() / f"{motion}.npz"), BodyModel.embedded(), frames=frames, seed=3,
-        shot_index=0, textures=textures, stages=(stage,),
+        shot_index=0, textures=textures, places=Places((stage,)),
     )  # fmt: skip
 
 

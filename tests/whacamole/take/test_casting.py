@@ -10,6 +10,7 @@ from scipy.spatial import cKDTree
 from whacamole.body import BodyModel
 from whacamole.errors import TakeError
 from whacamole.motion import embedded_motions, read_motion
+from whacamole.stage import Places
 from whacamole.take import Take, stage_take
 from whacamole.wardrobe import fits
 from whacamole.wardrobe.shells import checked_textures
@@ -41,7 +42,7 @@ def take(body: BodyModel, folder: Path, uv_textures: Path | None = None) -> Take
         seed=3,
         shot_index=0,
         textures=folder,
-        stages=("plaza",),
+        places=Places(("plaza",)),
         uv_textures=uv_textures,
     )
 
