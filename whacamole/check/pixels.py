@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.ndimage import maximum_filter
+from scipy.spatial import cKDTree
 
 from whacamole.check.limits import Limits
 from whacamole.labels.arrays import AnyArray, Bools, Float64s, Floats, Integers
@@ -12,7 +13,9 @@ from whacamole.labels.people import to_camera
 from whacamole.labels.raster import Raster, RasterMesh, rasterize
 
 _RESIDUAL = 0.04  # metres; how far depth may differ and still speak for this frame
-_CLOTHES = 0.06  # metres that clothes may lie before a body
+_CLOTHES = 0.06  # metres that clothes and hair may lie before a body
+_BARE = 0.003  # metres; in a quick turn, cloth a centimetre off the skin moves otherwise by half a pixel
+_TOUCHING = 0.002  # metres by which clothes that lie on another's skin may seem to lie under it
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +78,7 @@ class PersonPixels:
 
 
 def person_pixels(
-    drawn: Drawn, shown: Shown, number: int, track: int, is_hand: Bools, limits: Limits
+    drawn: Drawn, shown: Shown, number: int, ids: list[int], K: Float64s, is_hand: Bools, limits: Limits
 ) -> PersonPixels:
     """Hold one person's drawn pixels against the mask and the depth.
 
@@ -83,14 +86,16 @@ def person_pixels(
         drawn: the labelled bodies.
         shown: the images.
         number: which of the people.
-        track: the id in the mask.
+        ids: of all people, in the mask.
+        K: intrinsics of the frame.
         is_hand: ``(F,)`` triangles of the hands.
         limits: what counts as deeper.
     """
     body = drawn.raster.mesh == number
     deeper = shown.depth[body] - drawn.raster.depth[body]
-    own = shown.mask[body] == track
+    own = shown.mask[body] == ids[number]
     stray = ~own & (deeper > -limits.depth)
+    stray[stray] = ~_others_cover(drawn, shown, number, ids, K, *(axis[stray] for axis in np.nonzero(body)))
     farthest = maximum_filter(drawn.raster.depth, 3)[body]
     sunk = own & (shown.depth[body] > farthest + limits.depth)
     hand = is_hand[drawn.raster.triangle[body]]
@@ -98,6 +103,25 @@ def person_pixels(
     off = (own & (np.abs(deeper) > 1.5 * limits.depth) & (deeper > -5 * limits.depth)) | stray
     counts = (body, stray, own, sunk, hand, hand & off)
     return PersonPixels(*(int(np.count_nonzero(flags)) for flags in counts))
+
+
+def _others_cover(
+    drawn: Drawn, shown: Shown, number: int, ids: list[int], K: Float64s, row: Integers, column: Integers
+) -> Bools:
+    """Which pixels of a body show the clothes or hair of somebody who touches it: before it, however little.
+
+    Their wearer's own body must be as near as clothes lie; the id in the mask alone is no proof.
+    """
+    covers = np.zeros(len(row), dtype=np.bool_)
+    depth = shown.depth[row, column].astype(np.float64)
+    before = depth < drawn.raster.depth[row, column] + _TOUCHING
+    rays = np.stack([column + 0.5, row + 0.5, np.ones(len(row))], axis=-1) @ np.linalg.inv(K).T
+    for other, track in enumerate(ids):
+        at = np.flatnonzero(before & (shown.mask[row, column] == track))
+        if other != number and len(at):
+            near, _ = cKDTree(drawn.vertices[other]).query(rays[at] * depth[at, None])
+            covers[at] = near < _CLOTHES
+    return covers
 
 
 def flow_error(
@@ -130,8 +154,9 @@ def flow_error(
     ahead, pixel = ahead[inside], pixel[inside]
     column, row = pixel.astype(np.intp).T
     depth = here[ahead, 2]
-    bare = (shown.mask[row, column] == track) & (np.abs(shown.depth[row, column] - depth) < 0.01)
-    bare &= np.abs(drawn.raster.depth[row, column] - depth) < 0.01
+    skin = drawn.raster.depth[row, column]
+    bare = (shown.mask[row, column] == track) & (np.abs(skin - depth) < 0.01)
+    bare[bare] = np.abs(shown.depth[row[bare], column[bare]] - skin[bare]) < _BARE
     if np.count_nonzero(bare) < 30:
         return 0.0, 0.0
     moved = project_points(there[ahead[bare]], K[1]) - pixel[bare]

@@ -150,8 +150,9 @@ class SequenceAudit:
     def _measure(self, number: int, drawn: Drawn, shown: Shown) -> None:
         """Everything about one frame alone."""
         self._unknown[number] = np.count_nonzero(~np.isin(shown.mask, [0, *self._ids]))
-        for person, track in enumerate(self._ids):
-            seen = person_pixels(drawn, shown, person, track, self._is_hand, self._limits)
+        K = self._sequence.camera["K"][number]
+        for person in range(len(self._ids)):
+            seen = person_pixels(drawn, shown, person, self._ids, K, self._is_hand, self._limits)
             slack = self._limits.slack
             at = (person, number)
             self._values["stray"][at] = max(seen.stray - slack, 0) / max(seen.area, 1)
