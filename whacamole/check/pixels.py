@@ -56,6 +56,14 @@ def draw(
 
 
 @dataclass(frozen=True, eq=False)
+class Hands:
+    """The hands of a body model: vertices ``(V,)`` and triangles ``(F,)``."""
+
+    vertex: Bools
+    triangle: Bools
+
+
+@dataclass(frozen=True, eq=False)
 class PersonPixels:
     """One person in one frame: how far the picture bears the labels out.
 
@@ -65,7 +73,7 @@ class PersonPixels:
         own: of those, how many show the person.
         sunk: of those, how many show something deeper than the body, there and in the pixels around: the body
             is not where the label puts it. (At an edge of the body, the part behind may be seen.)
-        hands: pixels of the hands among ``area``.
+        hands: pixels of the hands among ``area``, without those that the person's own clothes hide.
         hands_off: of those, how many stray or show a depth that is not the hand's.
     """
 
@@ -78,7 +86,7 @@ class PersonPixels:
 
 
 def person_pixels(
-    drawn: Drawn, shown: Shown, number: int, ids: list[int], K: Float64s, is_hand: Bools, limits: Limits
+    drawn: Drawn, shown: Shown, number: int, ids: list[int], K: Float64s, hands: Hands, limits: Limits
 ) -> PersonPixels:
     """Hold one person's drawn pixels against the mask and the depth.
 
@@ -88,7 +96,7 @@ def person_pixels(
         number: which of the people.
         ids: of all people, in the mask.
         K: intrinsics of the frame.
-        is_hand: ``(F,)`` triangles of the hands.
+        hands: where the hands are on every body.
         limits: what counts as deeper.
     """
     body = drawn.raster.mesh == number
@@ -98,9 +106,14 @@ def person_pixels(
     stray[stray] = ~_others_cover(drawn, shown, number, ids, K, *(axis[stray] for axis in np.nonzero(body)))
     farthest = maximum_filter(drawn.raster.depth, 3)[body]
     sunk = own & (shown.depth[body] > farthest + limits.depth)
-    hand = is_hand[drawn.raster.triangle[body]]
-    # Sleeves may cover a wrist, nothing covers fingers; another limb before the hand makes it no evidence.
+    hand = hands.triangle[drawn.raster.triangle[body]]
+    # Nothing covers fingers, but a sleeve, or the clothes of the hip or chest that the hand is at, may hide a
+    # part, and another limb before the hand makes it no evidence.
     off = (own & (np.abs(deeper) > 1.5 * limits.depth) & (deeper > -5 * limits.depth)) | stray
+    hidden = hand & own & off & (deeper < 0)
+    dressed = drawn.vertices[number][~hands.vertex]
+    places = [axis[hidden] for axis in np.nonzero(body)]
+    hand[hidden] = ~_is_near(_points(shown, K, *places), dressed)
     counts = (body, stray, own, sunk, hand, hand & off)
     return PersonPixels(*(int(np.count_nonzero(flags)) for flags in counts))
 
@@ -113,15 +126,28 @@ def _others_cover(
     Their wearer's own body must be as near as clothes lie; the id in the mask alone is no proof.
     """
     covers = np.zeros(len(row), dtype=np.bool_)
-    depth = shown.depth[row, column].astype(np.float64)
-    before = depth < drawn.raster.depth[row, column] + _TOUCHING
-    rays = np.stack([column + 0.5, row + 0.5, np.ones(len(row))], axis=-1) @ np.linalg.inv(K).T
+    before = shown.depth[row, column] < drawn.raster.depth[row, column] + _TOUCHING
+    points = _points(shown, K, row, column)
     for other, track in enumerate(ids):
         at = np.flatnonzero(before & (shown.mask[row, column] == track))
         if other != number and len(at):
-            near, _ = cKDTree(drawn.vertices[other]).query(rays[at] * depth[at, None])
-            covers[at] = near < _CLOTHES
+            covers[at] = _is_near(points[at], drawn.vertices[other])
     return covers
+
+
+def _points(shown: Shown, K: Float64s, row: Integers, column: Integers) -> Float64s:
+    """The points ``(n, 3)`` that pixels show, in the camera frame [m]."""
+    rays = np.stack([column + 0.5, row + 0.5, np.ones(len(row))], axis=-1) @ np.linalg.inv(K).T
+    points: Float64s = rays * shown.depth[row, column, None].astype(np.float64)
+    return points
+
+
+def _is_near(points: Float64s, body: Float64s) -> Bools:
+    """Which points may be of the clothes or hair over the vertices of a body."""
+    if not len(points):
+        return np.zeros(0, dtype=np.bool_)
+    distance, _ = cKDTree(body).query(points)
+    return np.asarray(distance < _CLOTHES, dtype=np.bool_)
 
 
 def flow_error(

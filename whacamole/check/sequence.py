@@ -13,6 +13,7 @@ from whacamole.check.limits import Limits
 from whacamole.check.order import REACH, colour_edges, correlation, label_edges, report_order
 from whacamole.check.pixels import (
     Drawn,
+    Hands,
     PersonPixels,
     Shown,
     draw,
@@ -25,7 +26,7 @@ from whacamole.check.pixels import (
 from whacamole.dataset import Sequence
 from whacamole.errors import DatasetError
 from whacamole.labels import ContactLabels, ContactThresholds
-from whacamole.labels.arrays import AnyArray, Bools, Float64s, Floats
+from whacamole.labels.arrays import AnyArray, Float64s, Floats
 from whacamole.labels.visibility import flesh_thickness, joint_visibility
 
 _BLOCK = 16
@@ -57,7 +58,7 @@ class SequenceAudit:
         self._ids = [int(track) for track in sequence.people["track_id"]]
         model = posed.model
         hand = model.weights[:, [20, 21, *range(25, 55)]].sum(axis=1) > 0.9
-        self._is_hand: Bools = hand[model.faces].all(axis=1)
+        self._hands = Hands(hand, hand[model.faces].all(axis=1))
         self._thickness = [
             flesh_thickness(model.rest_vertices(person.betas), model.rest_joints(person.betas))
             for person in posed.params
@@ -152,7 +153,7 @@ class SequenceAudit:
         self._unknown[number] = np.count_nonzero(~np.isin(shown.mask, [0, *self._ids]))
         K = self._sequence.camera["K"][number]
         for person in range(len(self._ids)):
-            seen = person_pixels(drawn, shown, person, self._ids, K, self._is_hand, self._limits)
+            seen = person_pixels(drawn, shown, person, self._ids, K, self._hands, self._limits)
             slack = self._limits.slack
             at = (person, number)
             self._values["stray"][at] = max(seen.stray - slack, 0) / max(seen.area, 1)

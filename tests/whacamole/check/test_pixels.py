@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from whacamole.check.limits import Limits
-from whacamole.check.pixels import Shown, draw, person_pixels
+from whacamole.check.pixels import Hands, Shown, draw, person_pixels
 
 SIZE = (40, 30)
 K = np.array([[40.0, 0, 20], [0, 40, 15], [0, 0, 1]])
@@ -23,6 +23,9 @@ def faces() -> np.ndarray:
     return np.concatenate([np.stack([a, b, c], 1), np.stack([a, c, d], 1)])
 
 
+NO_HANDS = Hands(np.zeros(33 * 25, dtype=bool), np.zeros(len(faces()), dtype=bool))
+
+
 @pytest.mark.parametrize(
     ("beside", "nearer", "fault"),
     [
@@ -35,6 +38,21 @@ def test_the_hair_of_another_may_lie_on_a_body_if_they_touch(beside, nearer, fau
     drawn = draw([sheet(0.0, 1.0), sheet(beside, 1.03)], faces(), np.array([1, 2]), K, np.eye(4), SIZE)
     body = drawn.raster.mesh == 0
     shown = Shown(np.where(body, 2, 0), np.where(body, 1.0 - nearer, np.inf))
-    found = person_pixels(drawn, shown, 0, [1, 2], K, np.zeros(len(faces()), dtype=bool), Limits())
+    found = person_pixels(drawn, shown, 0, [1, 2], K, NO_HANDS, Limits())
     assert found.area > 500
     assert found.stray == (found.area if fault else 0)
+
+
+@pytest.mark.parametrize("all_hand", [False, True])
+def test_clothes_of_the_hip_may_hide_a_hand_but_a_hand_may_not_be_elsewhere(all_hand):
+    """The picture is 4 cm before the hand: clothes, unless no part that wears any is near."""
+    vertex = np.ones(33 * 25, dtype=bool) if all_hand else np.arange(33 * 25) >= 33 * 13
+    hands = Hands(vertex, vertex[faces()].all(axis=1))
+    drawn = draw([sheet(0.0, 1.0)], faces(), np.array([1]), K, np.eye(4), SIZE)
+    body = drawn.raster.mesh == 0
+    shown = Shown(np.where(body, 1, 0), np.where(body, 0.96, np.inf))
+    found = person_pixels(drawn, shown, 0, [1], K, hands, Limits())
+    assert found.hands_off == found.hands
+    drawn_hand = np.count_nonzero(hands.triangle[drawn.raster.triangle] & body)
+    assert (found.hands == drawn_hand) == all_hand
+    assert found.hands > 0
