@@ -2,18 +2,32 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
 from camera_rigs import CameraPath
 from whacamole.body import BodyModel, BodyParams
 from whacamole.labels.arrays import AnyArray, Float64s, Floats, Integers, transformed
-from whacamole.labels.mesh import triangulated, vertex_areas
-from whacamole.labels.raster import RasterMesh, rasterize
+from whacamole.labels.cutout import Cutout
+from whacamole.labels.mesh import vertex_areas
+from whacamole.labels.raster import RasterMesh, outermost, rasterize
 from whacamole.labels.visibility import flesh_thickness, joint_visibility, seen_box, truncation, whole_box
 
-WorldMesh = tuple[Floats, Integers]
-"""Vertices ``(V, 3)`` in the world [m] and faces, ``(F, 3)`` or ``(F, 4)``."""
+
+class WorldMesh(NamedTuple):
+    """Something worn in one frame.
+
+    Attributes:
+        vertices: ``(V, 3)`` in the world [m].
+        faces: ``(F, 3)`` triangles.
+        cutout: what of them is there, where the texture's alpha cuts the surface.
+    """
+
+    vertices: Floats
+    faces: Integers
+    cutout: Cutout | None = None
+
 
 _EXACT = ("global_orient", "transl")  # float64; all other parameters float32
 _PARAMETERS = (
@@ -130,18 +144,18 @@ class PeopleLabels:
         K, width, height = self._camera.K[frame], self._camera.width, self._camera.height
         worn = person.worn(frame) if person.worn else ()
         surfaces = [
-            (to_camera(points, self._T_camera_world[frame]), faces)
-            for points, faces in ((body, self._model.faces), *((v, triangulated(f)) for v, f in worn))
+            RasterMesh(to_camera(mesh.vertices, self._T_camera_world[frame]), mesh.faces, cutout=mesh.cutout)
+            for mesh in (WorldMesh(body, self._model.faces), *worn)
         ]
-        alone = rasterize([RasterMesh(points, faces) for points, faces in surfaces], K, width, height)
+        alone = rasterize(surfaces, K, width, height)
         own = images.mask == person.track_id
         whole = np.count_nonzero(alone.mesh >= 0)
         seen = np.count_nonzero(own)
         at = (number, frame)
         out["valid"][at] = whole > 0 or seen > 0
         out["visible_fraction"][at] = min(seen / whole, 1.0) if whole else float(seen > 0)
-        out["truncation"][at] = truncation(surfaces[0][0], self._areas[number], K, (width, height))
-        out["bbox_xyxy"][at] = whole_box([points for points, _ in surfaces], K)
+        out["truncation"][at] = truncation(surfaces[0].vertices, self._areas[number], K, (width, height))
+        out["bbox_xyxy"][at] = whole_box([outermost(mesh) for mesh in surfaces], K)
         out["bbox_visible_xyxy"][at] = seen_box(own)
         out["joint_visibility"][at] = joint_visibility(
             out["joints_camera"][at].astype(np.float64),

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from whacamole.labels.arrays import Bools, Float64s, Floats, Indices, Integers, ranges
 from whacamole.labels.clipping import ScreenTriangles, screen_triangles
+from whacamole.labels.cutout import Cutout, ProjectedCutout
 
 NEAR = 0.01
 """Planar depth in front of which nothing is drawn [m]."""
@@ -29,11 +30,13 @@ class RasterMesh:
         vertices: ``(V, 3)`` OpenCV axes, metres.
         faces: ``(F, 3)`` triangles, counter-clockwise seen from outside.
         cull_back: leave out triangles seen from inside (halves the work for a closed mesh seen from outside).
+        cutout: where the surface is there at all; None for all of it.
     """
 
     vertices: Floats
     faces: Integers
     cull_back: bool = False
+    cutout: Cutout | None = None
 
 
 @dataclass(frozen=True)
@@ -70,7 +73,14 @@ def rasterize(
         triangles = screen_triangles(
             mesh.vertices, mesh.faces, K, (width, height), near=near, cull_back=mesh.cull_back
         )
+        cut = None if mesh.cutout is None else ProjectedCutout(mesh.cutout, mesh.vertices, mesh.faces, K)
         for pixel, row, inverse_z in _fragments(triangles, width, height):
+            if cut is not None:
+                # What lies behind a surface drawn before needs no look at the texture.
+                ahead = np.flatnonzero(inverse_z > inverse_depth[pixel])
+                y, x = np.divmod(pixel[ahead], width)
+                ahead = ahead[cut.opaque(triangles.index[row[ahead]], x + 0.5, y + 0.5)]
+                pixel, row, inverse_z = pixel[ahead], row[ahead], inverse_z[ahead]
             before = inverse_depth[pixel]
             np.maximum.at(inverse_depth, pixel, inverse_z)
             won = (inverse_z == inverse_depth[pixel]) & (inverse_z > before)
@@ -83,10 +93,26 @@ def rasterize(
     return Raster(depth.reshape(shape), mesh_of.reshape(shape), triangle_of.reshape(shape))
 
 
+def outermost(mesh: RasterMesh) -> Floats:
+    """``(N, 3)`` points of a mesh that no other point of it outreaches, in the camera frame [m].
+
+    All its vertices, or where a texture cuts it the outermost points of what is left of every triangle.
+    """
+    if mesh.cutout is None:
+        return mesh.vertices
+    triangle, weights = mesh.cutout.outline
+    corners = mesh.vertices[mesh.faces[triangle]]
+    points: Float64s = (corners * weights[..., None]).sum(axis=1)
+    return points
+
+
 def silhouette(
     meshes: Sequence[RasterMesh], K: Float64s, width: int, height: int, *, near: float = NEAR
 ) -> Bools:
-    """``(H, W)`` pixels covered by any of the meshes: :func:`rasterize` without depth, in less time."""
+    """``(H, W)`` pixels covered by any of the meshes: :func:`rasterize` without depth, in less time.
+
+    Surfaces count whole here, with what the alpha of their texture cuts away.
+    """
     # Spans are marked by +1 at the first pixel and -1 after the last; a running sum fills them.
     edges = np.zeros(height * (width + 1), dtype=np.int64)
     for mesh in meshes:

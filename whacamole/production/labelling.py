@@ -1,6 +1,6 @@
 """All labels of one sequence, from the take and the rendered frames."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -9,17 +9,19 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from camera_rigs import Plan
-from render_jobs import PASSES
+from render_jobs import PASSES, Mesh
 from render_jobs.images import read_exr
 from whacamole.body import BodyModel
 from whacamole.dataset import SequenceLayout
 from whacamole.dataset.files import write_arrays, write_json
 from whacamole.labels import FrameImages, LabelledPerson, label_sequence
 from whacamole.labels.camera import Film
+from whacamole.labels.cutout import Cutout
+from whacamole.labels.mesh import triangulated
 from whacamole.labels.people import WorldMesh
 from whacamole.take import Performer, Take
 
-__all__ = ["write_labels"]
+__all__ = ["worn_over", "write_labels"]
 
 
 def write_labels(
@@ -57,20 +59,27 @@ def write_labels(
 
 def _labelled(person: Performer) -> LabelledPerson:
     inner = person.params.slice(1, person.params.num_frames - 1)
-    return LabelledPerson(person.track_id, person.motion_id, person.role.gender, inner, _worn(person))
+    worn = worn_over(person.meshes)
+    return LabelledPerson(person.track_id, person.motion_id, person.role.gender, inner, worn)
 
 
-def _worn(person: Performer) -> Callable[[int], list[WorldMesh]] | None:
-    """Return the clothes and hair of a frame; the first mesh of a performer is the skin."""
-    if len(person.meshes) == 1:
+def worn_over(meshes: Sequence[Mesh]) -> Callable[[int], list[WorldMesh]] | None:
+    """Return what gives the clothes and hair of a frame; the first mesh of a performer is the skin."""
+    if len(meshes) == 1:
         return None
-    worn = [(mesh, _triangles(mesh.faces)) for mesh in person.meshes[1:]]
-    return lambda frame: [(mesh.frame(frame), triangles) for mesh, triangles in worn]
+    worn = [(mesh, triangulated(mesh.faces), _cutout(mesh)) for mesh in meshes[1:]]
+    return lambda frame: [WorldMesh(mesh.frame(frame), faces, cutout) for mesh, faces, cutout in worn]
 
 
-def _triangles(faces: NDArray[np.int32]) -> NDArray[np.int32]:
-    """Return (F, 3) triangles of (F, 3) or (F, 4) faces; −1 in the fourth column marks a triangle."""
-    if faces.shape[1] == 3:
-        return faces
-    quads = faces[faces[:, 3] >= 0]
-    return np.concatenate([faces[:, :3], quads[:, [0, 2, 3]]])
+def _cutout(mesh: Mesh) -> Cutout | None:
+    """Return what the alpha of a mesh's texture leaves of it, as the renderers cut it."""
+    material = mesh.material
+    if material.alpha_mode == "opaque" or material.base_color_texture is None or mesh.uv is None:
+        return None
+    with Image.open(material.base_color_texture) as picture:
+        if "A" not in picture.getbands():
+            return None
+        alpha = np.asarray(picture.getchannel("A"))
+    corner = np.where(mesh.faces < 0, -1, np.arange(mesh.faces.size).reshape(mesh.faces.shape))
+    uv = mesh.uv.reshape(-1, 2)[triangulated(corner)].astype(np.float64) * material.uv_scale
+    return Cutout(alpha, uv)

@@ -5,9 +5,12 @@ import pytest
 import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.ndimage import map_coordinates
 from scipy.spatial import Delaunay, QhullError
 
 from whacamole.labels import RasterMesh, rasterize, silhouette
+from whacamole.labels.cutout import Cutout
+from whacamole.labels.raster import outermost
 
 WIDTH, HEIGHT = 64, 48
 K = np.array([[60.0, 0.0, 32.0], [0.0, 55.0, 24.0], [0.0, 0.0, 1.0]])
@@ -138,3 +141,43 @@ def test_nothing_to_draw():
     behind = RasterMesh(np.array([[0, 0, -1.0], [1, 0, -1], [0, 1, -2]]), np.array([[0, 1, 2]]))
     assert (rasterize([behind], K, WIDTH, HEIGHT).mesh == -1).all()
     assert not silhouette([behind], K, WIDTH, HEIGHT).any()
+
+
+def test_a_cutout_is_cut_where_the_ray_meets_opaque_texture():
+    # The floor y = 1 as one quad that passes under the camera, so cut at the near plane; u runs with x and v
+    # with z, the texture repeats. Its 8 x 8 alpha is noise, asked for by SciPy's own interpolation.
+    corners = np.array([[-4.0, 1, -3], [4, 1, -3], [4, 1, 9], [-4, 1, 9]])
+    faces = np.array([[0, 1, 2], [0, 2, 3]])
+    alpha = np.random.default_rng(5).integers(0, 256, (8, 8), dtype=np.uint8)
+    uv = np.stack([corners[:, 0] / 5, corners[:, 2] / 4], axis=1)
+    cut = RasterMesh(corners, faces, cutout=Cutout(alpha, uv[faces]))
+    wall = RasterMesh(np.array([[-90.0, -90, 20], [90, -90, 20], [0, 180, 20]]), np.array([[0, 1, 2]]))
+    drawn = rasterize([cut, wall], K, WIDTH, HEIGHT)
+    rays = pixel_rays()
+    with np.errstate(divide="ignore", invalid="ignore"):
+        hit = rays / rays[..., 1:2]
+    on_floor = (rays[..., 1] > 0) & (np.abs(hit[..., 0]) < 4) & (hit[..., 2] < 9)
+    x, z = np.where(on_floor, hit[..., 0], 0.0), np.where(on_floor, hit[..., 2], 0.0)
+    at = [(1 - z / 4) * 8 - 0.5, x / 5 * 8 - 0.5]
+    there = map_coordinates(alpha.astype(float), at, order=1, mode="grid-wrap") > 127.5
+    np.testing.assert_array_equal(drawn.mesh, np.where(on_floor & there, 0, 1))
+    np.testing.assert_allclose(drawn.depth[drawn.mesh == 0], z[on_floor & there], rtol=1e-9)
+    assert 0.2 < there[on_floor].mean() < 0.8
+    # Drawn after what hides it, or before: the same.
+    swapped = rasterize([wall, cut], K, WIDTH, HEIGHT)
+    np.testing.assert_array_equal(swapped.depth, drawn.depth)
+
+
+def test_the_outline_of_a_cutout_reaches_as_far_as_what_is_there():
+    # A disc of alpha on a square of 2 m that two triangles make.
+    across, down = np.meshgrid(np.arange(64) - 31.5, np.arange(64) - 31.5)
+    alpha = np.where(np.hypot(across, down) < 26, 255, 0).astype(np.uint8)  # radius 26 / 32 m
+    corners = np.array([[-1.0, -1, 4], [1, -1, 4], [1, 1, 4], [-1, 1, 4]])
+    faces = np.array([[0, 1, 2], [0, 2, 3]])
+    uv = np.stack([(corners[:, 0] + 1) / 2, (1 - corners[:, 1]) / 2], axis=1)
+    found = outermost(RasterMesh(corners, faces, cutout=Cutout(alpha, uv[faces])))
+    assert np.hypot(found[:, 0], found[:, 1]).max() < 26.5 / 32
+    reach = np.abs([found.min(axis=0), found.max(axis=0)])[:, :2]
+    assert (reach > 26 / 32 - 2 / 8).all()  # short by less than a step, an eighth of the side
+    whole = outermost(RasterMesh(corners, faces, cutout=Cutout(np.full((2, 2), 255, np.uint8), uv[faces])))
+    np.testing.assert_allclose(np.unique(whole, axis=0), np.unique(corners, axis=0))

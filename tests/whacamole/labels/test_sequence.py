@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from whacamole.body import BodyParams
 from whacamole.labels import FrameImages, LabelledPerson, RasterMesh, label_sequence, rasterize
-from whacamole.labels.people import to_camera
+from whacamole.labels.people import WorldMesh, to_camera
 from whacamole.labels.sequence import posed_frames
 
 FRAMES = 3
@@ -187,17 +187,19 @@ def test_worn_things_count_into_silhouette_and_box(scene, model, standing, level
     camera = level_camera(1)
     params = standing(1)
     bare = LabelledPerson(1, "a", "neutral", params)
-    # A sandwich board, one square metre, just before the person: quads as a wardrobe has them.
-    board = (
+    # A sandwich board, one square metre, just before the person.
+    board = WorldMesh(
         np.array([[-0.5, -0.3, 0.4], [0.5, -0.3, 0.4], [0.5, -0.3, 1.4], [-0.5, -0.3, 1.4]]),
-        np.array([[0, 1, 2, 3]]),
+        np.array([[0, 1, 2], [0, 2, 3]]),
     )
     dressed = replace(bare, worn=lambda frame: [board])
     view = camera.T_camera_world[0]
     body = next(posed_frames([bare], model))[0]
-    triangles = np.array([[0, 1, 2], [0, 2, 3]])
     drawn = rasterize(
-        [RasterMesh(to_camera(body, view), model.faces), RasterMesh(to_camera(board[0], view), triangles)],
+        [
+            RasterMesh(to_camera(body, view), model.faces),
+            RasterMesh(to_camera(board.vertices, view), board.faces),
+        ],
         camera.K[0], camera.width, camera.height,
     )  # fmt: skip
     image = FrameImages((drawn.mesh >= 0).astype(np.uint8), drawn.depth.astype(np.float32))
