@@ -1,12 +1,13 @@
 """The parts that look at pixels with models of their own: MediaPipe and colmap."""
 
+import os
 from pathlib import Path
 
 import numpy as np
 import pytest
 from PIL import Image
 
-from whacamole.baseline.estimators.blazepose import NUM_LANDMARKS, Reading, Region
+from whacamole.baseline.estimators.blazepose import NUM_LANDMARKS, Reading, Region, held_back_stderr
 from whacamole.baseline.estimators.tracks import PATIENCE, follow
 
 FRAMES, SIDE = 40, 100.0
@@ -88,12 +89,27 @@ def test_nobody_is_no_track() -> None:
     assert _tracks([]) == []
 
 
-def test_mediapipe_finds_nobody_on_a_blank_wall() -> None:
+def test_mediapipe_finds_nobody_on_a_blank_wall_and_says_nothing(capfd: pytest.CaptureFixture[str]) -> None:
+    """Its native code would warn of its own graphs, across the bar, at every start."""
     pytest.importorskip("mediapipe")
     from whacamole.baseline.estimators.blazepose import BlazePose
 
     with BlazePose() as pose:
-        assert pose.find(np.full((120, 160, 3), 128, dtype=np.uint8)) == []
+        wall = np.full((120, 160, 3), 128, dtype=np.uint8)
+        assert pose.find(wall) == []
+        assert pose.read(wall, Region(80.0, 60.0, 100.0, 0.0)) is None
+    assert capfd.readouterr() == ("", "")
+
+
+def test_what_native_code_says_is_shown_if_it_fails(capfd: pytest.CaptureFixture[str]) -> None:
+    @held_back_stderr()
+    def start() -> None:
+        os.write(2, b"no memory\n")
+        raise RuntimeError
+
+    with pytest.raises(RuntimeError):
+        start()
+    assert capfd.readouterr().err == "no memory\n"
 
 
 @pytest.mark.slow

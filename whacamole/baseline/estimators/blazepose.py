@@ -5,7 +5,11 @@ the wheel carries; nothing is downloaded.
 """
 
 import math
-from collections.abc import Sequence
+import os
+import sys
+import tempfile
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
@@ -100,8 +104,13 @@ class BlazePose:
         self._mp = mp
         self._time = 0
         self._out: dict[str, Any] = {}
-        self._detect = self._start(_DETECT, ("found",), lists=True)
-        self._read = self._start(_READ, ("landmarks", "world", "next"), lists=False)
+        with held_back_stderr():
+            self._detect = self._start(_DETECT, ("found",), lists=True)
+            self._read = self._start(_READ, ("landmarks", "world", "next"), lists=False)
+            # Most of what the graphs have to say comes with the first image.
+            nothing = np.zeros((64, 64, 3), dtype=np.uint8)
+            self.find(nothing)
+            self.read(nothing, Region(32.0, 32.0, 64.0, 0.0))
 
     def __enter__(self) -> Self:
         return self
@@ -178,6 +187,27 @@ class BlazePose:
 
 def _points(landmarks: Sequence[Any]) -> FloatArray:
     return np.array([[point.x, point.y, point.z] for point in landmarks])
+
+
+@contextmanager
+def held_back_stderr() -> Iterator[None]:
+    """Hold back what native code writes to standard error, unless it fails.
+
+    MediaPipe warns of its own graphs at every start, past Python and past every setting of its loggers.
+    """
+    sys.stderr.flush()
+    with tempfile.TemporaryFile() as held:
+        stderr = os.dup(2)
+        os.dup2(held.fileno(), 2)
+        try:
+            yield
+        except BaseException:
+            held.seek(0)
+            os.write(stderr, held.read())
+            raise
+        finally:
+            os.dup2(stderr, 2)
+            os.close(stderr)
 
 
 def _mediapipe() -> Any:
