@@ -26,7 +26,9 @@ def split(
     from whacamole.dataset import open_dataset
     from whacamole.dataset.splitting import SplitRule, split_dataset
 
-    sides = split_dataset(open_dataset(dataset).layout, SplitRule(by, test_fraction, seed))
+    data = open_dataset(dataset)
+    data.require_whole()
+    sides = split_dataset(data.layout, SplitRule(by, test_fraction, seed))
     if json_output:
         typer.echo(json.dumps(sides, indent=1))
         return

@@ -21,6 +21,7 @@ def stats(
     from whacamole.dataset.statistics import collect
 
     data = open_dataset(dataset)
+    data.require_whole()
     numbers = collect(data if split is None else data.split(split))
     if card:
         write_card(data.layout)

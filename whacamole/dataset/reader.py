@@ -159,11 +159,27 @@ class Dataset:
     def index(self) -> dict[str, Any]:
         """What ``dataset.json`` says: versions, recipe, body model, one entry a sequence."""
         value = read_json(self.layout.index)
-        if not isinstance(value, dict):
+        entries = value.get("sequences") if isinstance(value, dict) else None
+        if not isinstance(entries, list) or not all(isinstance(entry, dict) for entry in entries):
             raise DatasetError(
                 f"{self.layout.index}: not the index of a dataset; run `whacamole render` again"
             )
-        return value
+        whole: dict[str, Any] = value
+        return whole
+
+    def require_whole(self) -> None:
+        """Refuse a dataset that lacks a sequence which ``dataset.json`` lists.
+
+        Raises:
+            DatasetError: the index is broken, or a sequence it lists is not there.
+        """
+        for entry in self.index["sequences"]:
+            summary = self.layout.sequence(str(entry.get("id"))).summary
+            if not summary.is_file():
+                raise DatasetError(
+                    f"{summary}: not there, but {self.layout.index.name} lists the sequence; "
+                    "run `whacamole render` again with the same options"
+                )
 
     def __len__(self) -> int:
         """Return the number of sequences."""
@@ -215,12 +231,19 @@ def open_dataset(path: Path | str) -> Dataset:
     """Open the dataset in the folder ``path``.
 
     Raises:
-        DatasetError: it is no dataset.
+        DatasetError: it is no dataset, is not finished, or its index is broken.
     """
     layout = DatasetLayout(Path(path))
     if not layout.index.is_file():
+        if layout.work.is_dir() or layout.sequences.is_dir():
+            raise DatasetError(
+                f"{path}: unfinished, there is no dataset.json yet; wait for `whacamole render` to end "
+                "(`whacamole status`), or start it again with the same options"
+            )
         raise DatasetError(f"{path}: no dataset.json; is this a folder made by `whacamole render`?")
-    return Dataset(layout, tuple(layout.finished()))
+    dataset = Dataset(layout, tuple(layout.finished()))
+    _ = dataset.index  # a broken index is told now, not when half the work is done
+    return dataset
 
 
 def _arrays(path: Path) -> Arrays:

@@ -116,13 +116,14 @@ def export_dataset(
 
     Raises:
         RecipeError: no such format, or it cannot leave frames out.
-        DatasetError: nothing to export, a pass is missing, or ``out`` is there already.
+        DatasetError: nothing to export, a sequence or a pass is missing, or ``out`` is there already.
     """
     exporter = EXPORTERS.get(to)
     if exporter is None:
         raise RecipeError(f"--to {to}: no such format; choose from {', '.join(EXPORTERS)}")
     if every < 1 or (every > 1 and not exporter.thins):
         raise RecipeError(f"--every {every}: {to} holds whole sequences; leave the option out")
+    dataset.require_whole()
     chosen = dataset if split is None else dataset.split(split)
     _require(exporter, chosen, split)
     if out.exists():

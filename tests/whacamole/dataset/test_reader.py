@@ -1,5 +1,6 @@
 """Reading: what was written comes back, and what is not there is named."""
 
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -88,3 +89,31 @@ def test_what_is_not_there_is_named(data: Dataset, tmp_path: Path) -> None:
     data[0].layout.camera.write_bytes(b"PK\x03\x04")
     with pytest.raises(DatasetError, match=r"camera\.npz"):
         data[0].camera  # noqa: B018
+
+
+@pytest.mark.parametrize("content", ["", '{"sequences": [', "[]", '{"seed": 1}', '{"sequences": [3]}'])
+def test_a_broken_index_is_named_when_the_dataset_is_opened(
+    data: Dataset, tmp_path: Path, content: str
+) -> None:
+    data.layout.index.write_text(content, encoding="utf-8")
+    with pytest.raises(DatasetError, match=r"dataset\.json: not .*"):
+        whacamole.open(tmp_path)
+
+
+def test_a_listed_sequence_without_its_summary_is_named(whole: Dataset, tmp_path: Path) -> None:
+    root = tmp_path / "copy"
+    shutil.copytree(whole.layout.root, root)
+    whacamole.open(root).require_whole()
+    gone = DatasetLayout(root).sequence(whole.ids[0]).summary
+    gone.unlink()
+    lacking = whacamole.open(root)
+    with pytest.raises(DatasetError, match=rf"{whole.ids[0]}/sequence\.json: not there.*whacamole render"):
+        lacking.require_whole()
+
+
+def test_a_dataset_that_still_renders_is_called_unfinished(data: Dataset, tmp_path: Path) -> None:
+    data.layout.index.unlink()
+    with pytest.raises(DatasetError, match=r"unfinished.*whacamole status"):
+        whacamole.open(tmp_path)
+    with pytest.raises(DatasetError, match=r"is this a folder made by"):
+        whacamole.open(tmp_path / "splits")
