@@ -149,6 +149,11 @@ class Recipe(BaseModel):
     textures: Path | None = Field(
         None, description="folder of pictures for the body model's UV map, worn in place of clothes"
     )
+    contact_regions: Path | None = Field(
+        None,
+        description="JSON or .npz of the body model's vertices by region, the parts of the contact labels; "
+        "none: 21 parts",
+    )
     seed: int = Field(0, ge=0, lt=2**63, description="the one seed of all choices")
     allow_breaches: bool = Field(
         False, description="render a sequence even where no camera was found that keeps all rules"

@@ -93,6 +93,13 @@ def render(
             show_default="clothes of ours",
         ),
     ] = None,
+    contact_regions: Annotated[
+        Path | None,
+        typer.Option(
+            help="JSON or .npz of the body model's vertices by region, to name contacts by.",
+            show_default="21 parts",
+        ),
+    ] = None,
     seed: Annotated[int | None, typer.Option(help="The one seed of all choices.", show_default="0")] = None,
     limit: Annotated[
         int | None, typer.Option(help="Make at most so many sequences.", show_default="no limit")
@@ -174,8 +181,8 @@ def render(
         "people": people, "stages": stages, "hdris": hdris,
         "motion_blur": motion_blur, "f_number": f_number, "exposure": exposure, "noise": noise,
         "size": size, "fps": fps, "quality": quality, "engine": engine, "passes": passes,
-        "image_format": image_format, "body_model": body_model, "textures": textures, "seed": seed,
-        "limit": limit,
+        "image_format": image_format, "body_model": body_model, "textures": textures,
+        "contact_regions": contact_regions, "seed": seed, "limit": limit,
         "allow_breaches": allow_breaches,
     }  # fmt: skip
     overrides: dict[str, Any] = {name: value for name, value in given.items() if value is not None}

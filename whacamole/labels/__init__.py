@@ -8,6 +8,7 @@ from whacamole.labels.parts import PART_NAMES, BodyParts, parts_from_regions, sk
 from whacamole.labels.people import FrameImages, LabelledPerson, PeopleLabels
 from whacamole.labels.preview import preview_strip
 from whacamole.labels.raster import Raster, RasterMesh, rasterize, silhouette
+from whacamole.labels.regions import read_regions
 from whacamole.labels.sequence import SequenceLabels, label_sequence
 
 __all__ = [
@@ -29,6 +30,7 @@ __all__ = [
     "parts_from_regions",
     "preview_strip",
     "rasterize",
+    "read_regions",
     "silhouette",
     "skinning_parts",
 ]

@@ -123,8 +123,15 @@ def skinning_parts(
     return BodyParts(PART_NAMES, part)
 
 
-def parts_from_regions(regions: Mapping[str, Sequence[int]], num_vertices: int) -> BodyParts:
+UNLISTED = "unlisted"
+"""The part of the vertices that no region of a region file holds; the last, there only if it is needed."""
+
+
+def parts_from_regions(regions: Mapping[str, Sequence[int] | Integers], num_vertices: int) -> BodyParts:
     """Parts given as lists of vertices: a segmentation made for one body, as the 75 regions of SMPL-X.
+
+    Every vertex gets a part, so that all that touches has a name: those in no region make a last part,
+    :data:`UNLISTED`.
 
     Args:
         regions: vertex numbers by name; where regions share a vertex the later one keeps it.
@@ -138,13 +145,19 @@ def parts_from_regions(regions: Mapping[str, Sequence[int]], num_vertices: int) 
     part = np.full(num_vertices, -1, dtype=np.int32)
     for number, (name, listed) in enumerate(regions.items()):
         members = np.asarray(listed, dtype=np.int64)
-        if members.size and (members.min() < 0 or members.max() >= num_vertices):
+        wrong = members[(members < 0) | (members >= num_vertices)]
+        if wrong.size:
             raise ValueError(
-                f"region {name!r} holds vertex {members.max()}, the body has {num_vertices}: "
+                f"region {name!r} holds vertex {wrong[0]}, the body has {num_vertices}: "
                 "the region file belongs to another body model"
             )
         part[members] = number
-    return BodyParts(tuple(regions), part)
+    if (part >= 0).all():
+        return BodyParts(tuple(regions), part)
+    if UNLISTED in regions:
+        raise ValueError(f"a region is called {UNLISTED!r}, the name of what no region holds: rename it")
+    part[part < 0] = len(regions)
+    return BodyParts((*regions, UNLISTED), part)
 
 
 def _forward(joints: Float64s) -> Float64s:

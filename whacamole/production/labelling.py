@@ -14,7 +14,7 @@ from render_jobs.images import read_exr
 from whacamole.body import BodyModel
 from whacamole.dataset import SequenceLayout
 from whacamole.dataset.files import write_arrays, write_json
-from whacamole.labels import FrameImages, LabelledPerson, label_sequence
+from whacamole.labels import FrameImages, LabelledPerson, label_sequence, read_regions
 from whacamole.labels.camera import Film
 from whacamole.labels.cutout import Cutout
 from whacamole.labels.mesh import triangulated
@@ -33,6 +33,7 @@ def write_labels(
     film: Film,
     ready: Callable[[int], None],
     on_frame: Callable[[int], None],
+    regions: Path | None = None,
 ) -> dict[str, NDArray[Any]]:
     """Write the three ``.npz`` files and ``shot.json``; return the arrays of ``people.npz``.
 
@@ -41,6 +42,10 @@ def write_labels(
         film: how they were exposed.
         ready: called before the images of a frame are read; returns when they are there.
         on_frame: told after each frame.
+        regions: file of the parts for the contact labels; None: the 21 parts of any body.
+
+    Raises:
+        BodyModelError: the region file cannot be used.
     """
 
     def images(frame: int) -> FrameImages:
@@ -49,7 +54,8 @@ def write_labels(
         return FrameImages(mask, read_exr(frames / PASSES["depth"].file(frame))["Z"])
 
     people = [_labelled(person) for person in take.performers]
-    labels = label_sequence(people, body, plan.path, images, film=film, on_frame=on_frame)
+    parts = None if regions is None else read_regions(regions, body.num_vertices)
+    labels = label_sequence(people, body, plan.path, images, parts=parts, film=film, on_frame=on_frame)
     write_arrays(sequence.camera, labels.camera)
     write_arrays(sequence.people, labels.people)
     write_arrays(sequence.contact, labels.contact)

@@ -186,12 +186,15 @@ def _note_failure(order: SequenceOrder, error: str) -> None:
 
 def _facts(recipe: Recipe) -> dict[str, Any]:
     """Return what ``dataset.json`` says of the whole dataset."""
+    from whacamole.labels import read_regions
     from whacamole.production.sequence import body_of
     from whacamole.wardrobe.shells import checked_textures
 
     body = body_of(recipe)
     if recipe.textures is not None:
         checked_textures(body, recipe.textures)  # before hours of work, not in them
+    if recipe.contact_regions is not None:
+        read_regions(recipe.contact_regions, body.num_vertices)
     return {
         "generator": "whacamole",
         "versions": {"whacamole": __version__, **{name: version(name) for name in ("bpy", "numpy", "scipy")}},

@@ -130,7 +130,9 @@ def _make_in(
     frames, labels = beside(
         folder,
         render,
-        lambda ready, done: write_labels(take, plan, body, folder / "out", sequence, film, ready, done),
+        lambda ready, done: write_labels(
+            take, plan, body, folder / "out", sequence, film, ready, done, recipe.contact_regions
+        ),
         say,
         take.num_frames,
         profile,

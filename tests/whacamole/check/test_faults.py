@@ -15,6 +15,8 @@ from whacamole.body import BodyModel, BodyParams
 from whacamole.check import Findings, check_dataset
 from whacamole.dataset import DatasetLayout, SequenceLayout
 from whacamole.dataset.files import write_arrays
+from whacamole.labels import ContactLabels, LabelledPerson, parts_from_regions
+from whacamole.labels.sequence import posed_frames
 
 
 @pytest.fixture
@@ -297,6 +299,30 @@ def test_contact_that_does_not_follow(dataset, sequence):
     )
     found = labels(audit(dataset))
     assert {"contact.ground_contact", "contact.vertex_contact"} <= found
+
+
+def test_contact_by_regions_of_the_users_own(dataset, sequence):
+    """Without the region file the body as a whole is held against its labels."""
+    people, camera, model = load(sequence.people), load(sequence.camera), BodyModel.embedded()
+    params = [BodyParams.from_arrays(people, "world", number) for number in range(2)]
+    cast = [LabelledPerson(number, "stroll", "neutral", each) for number, each in enumerate(params, 1)]
+    bodies = list(posed_frames(cast, model))
+    parts = parts_from_regions(
+        {"low": range(4000), "high": range(5000, model.num_vertices)}, model.num_vertices
+    )
+    made = ContactLabels(model, 2, len(bodies), float(camera["fps"]), parts=parts)
+    for frame, now in enumerate(bodies):
+        after = bodies[frame + 1] if frame + 1 < len(bodies) else None
+        made.add(frame, bodies[frame - 1] if frame else None, now, after)
+    contact = made.arrays()
+    write_arrays(sequence.contact, contact)
+    assert not audit(dataset).lines()[:-1]
+    change(sequence.contact, ground_distance=contact["ground_distance"] + np.float32(0.01))
+    assert labels(audit(dataset)) == {"contact.ground_distance"}
+    part = contact["person_contact_part"].copy()
+    part[0, 1, 3, 2] = 1 if part[0, 1, 3, 2] < 0 else -1
+    write_arrays(sequence.contact, contact | {"person_contact_part": part})
+    assert labels(audit(dataset)) == {"contact.person_contact_part"}
 
 
 def test_spoiled_boxes_and_visibility(dataset, sequence):
