@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -56,6 +57,23 @@ class Production:
         """Ids of the sequences asked for that are there, sorted."""
         return sorted(self.worklist.finished & {order.sequence_id for order in self.worklist.orders})
 
+    @cached_property
+    def fewer_people(self) -> dict[str, int]:
+        """People of each sequence of a single motion that has fewer than the recipe's least number.
+
+        Of one that is not made yet, how many it can have at most.
+        """
+        found = {}
+        for order in self.worklist.orders:
+            if order.motion.num_people > 1 or order.recipe.people[0] == 1:
+                continue
+            made = order.sequence_id in self.worklist.finished
+            summary = DatasetLayout(self.root).sequence(order.sequence_id)
+            people = int(read_summary(summary)["people"]) if made else order.people
+            if people < order.recipe.people[0]:
+                found[order.sequence_id] = people
+        return found
+
     def as_dict(self) -> dict[str, Any]:
         """Return plain values for JSON."""
         return {
@@ -65,6 +83,7 @@ class Production:
             "failed": self.failures,
             "refused": {str(file.path): file.problem for file in self.worklist.refused},
             "refused_stages": list(self.problems),
+            "fewer_people": self.fewer_people,
             "seconds": round(self.seconds, 3),
             "complete": self.complete,
         }
@@ -85,6 +104,8 @@ class Production:
         errors = Console(stderr=True, soft_wrap=True, highlight=False)
         if not quiet:
             self._print_table(Console())
+            if self.fewer_people:
+                Console(soft_wrap=True, highlight=False).print(self._people_note(), markup=False)
         if profiles:
             Console().print(profile_table(profiles))
         for file in self.worklist.refused:
@@ -114,12 +135,28 @@ class Production:
         if finished:
             console.print(f"Open {Places(self.root).page} in a browser", soft_wrap=True)
 
+    def _people_note(self) -> str:
+        """One line on the sequences with fewer people than asked, and why."""
+        orders = {order.sequence_id: order for order in self.worklist.orders}
+        few = [orders[name] for name in self.fewer_people]
+        fewest = few[0].recipe.people[0]
+        causes = []
+        if any(order.people < fewest for order in few):
+            causes.append("--motions holds too few other motions of one person that last as long")
+        if any(self.fewer_people[order.sequence_id] < order.people for order in few):
+            causes.append("no free ground was found for all, try a longer list of --stages or fewer --frames")
+        return (
+            f"{len(few)} of {len(orders)} sequences have fewer than {fewest} people, "
+            f"{few[0].sequence_id} has {self.fewer_people[few[0].sequence_id]}: {'; '.join(causes)}"
+        )
+
     def _plan_table(self) -> Table:
         table = Table("sequence", "motion", "format", "people", "frames")
         for order in self.worklist.orders:
             shown = "?" if order.motion.num_frames is None else str(order.frames)
-            people = str(order.motion.num_people)
-            table.add_row(order.sequence_id, str(order.motion.path), order.motion.source, people, shown)
+            table.add_row(
+                order.sequence_id, str(order.motion.path), order.motion.source, str(order.people), shown
+            )
         return table
 
     def _made_table(self) -> Table:

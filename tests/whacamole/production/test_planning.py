@@ -94,3 +94,13 @@ def test_shots_that_do_not_exist_are_named(folder: Path, tmp_path: Path) -> None
     assert result.returncode == 1
     assert "helicopter" in result.stderr
     assert "Traceback" not in result.stderr
+
+
+def test_a_crowd_that_the_motions_cannot_fill_is_told_in_one_line(folder: Path, tmp_path: Path) -> None:
+    asked = ("render", "--motions", folder, "--people", "3-4", "--out", tmp_path / "d", "--dry-run")
+    told = [line for line in run_cli(*asked).stdout.splitlines() if "fewer than 3 people" in line]
+    assert len(told) == 1
+    assert told[0].startswith(
+        "1 of 2 sequences have fewer than 3 people, walk_stageii-00 has 1: --motions holds"
+    )
+    assert json.loads(run_cli(*asked, "--json").stdout)["fewer_people"] == {"walk_stageii-00": 1}
