@@ -45,7 +45,7 @@ def statistics_text(numbers: Statistics) -> str:
         ("Shots", numbers.shots),
         ("Stages", numbers.stages),
         ("Licences of the motions", numbers.licences),
-        ("Sources of the motions", numbers.sources),
+        ("Forms of the motion files", numbers.sources),
         ("Genders", numbers.genders),
         ("Image sizes", numbers.sizes),
         ("Splits (sequences)", numbers.splits),
@@ -111,8 +111,10 @@ def _plot(spread: Spread) -> str:
     total, most = sum(spread.counts), max(spread.counts)
     if not total:
         return "none"
+    filled = [number for number, count in enumerate(spread.counts) if count]
     lines = []
-    for number, count in enumerate(spread.counts):
+    for number in range(filled[0], filled[-1] + 1):  # no rows of nothing before and after
+        count = spread.counts[number]
         above = spread.edges[number + 1 : number + 2]
         label = f"{spread.edges[number]:g} to {above[0]:g}" if above else f"{spread.edges[number]:g} and more"
         bar = "█" * round(BAR * count / most) or ("▏" if count else "")

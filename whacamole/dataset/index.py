@@ -15,8 +15,8 @@ from whacamole.errors import DatasetError
 __all__ = ["checksums_of", "read_json", "read_summary", "write_index", "write_summary"]
 
 
-def read_json(path: Path) -> Any:
-    """Return the value of a JSON file.
+def read_json(path: Path, remedy: str = "run `whacamole render` again with the same options") -> Any:
+    """Return the value of a JSON file; ``remedy`` ends the message if it is broken.
 
     Raises:
         DatasetError: the file is missing or is not JSON.
@@ -26,7 +26,7 @@ def read_json(path: Path) -> Any:
     except FileNotFoundError:
         raise DatasetError(f"{path}: not there; is this a dataset made by `whacamole render`?") from None
     except (OSError, UnicodeDecodeError, json.JSONDecodeError) as error:
-        raise DatasetError(f"{path}: not readable as JSON ({error}); make the dataset again") from error
+        raise DatasetError(f"{path}: not readable as JSON ({error}); {remedy}") from error
 
 
 def checksums_of(folder: Path) -> dict[str, str]:
@@ -46,7 +46,7 @@ def read_summary(sequence: SequenceLayout) -> dict[str, Any]:
     Raises:
         DatasetError: ``sequence.json`` is missing or broken.
     """
-    value = read_json(sequence.summary)
+    value = read_json(sequence.summary, "delete the folder, render again")
     if not isinstance(value, dict) or "motion_id" not in value:
         raise DatasetError(f"{sequence.summary}: no summary of a sequence; delete the folder, render again")
     return value

@@ -66,7 +66,7 @@ class Sequence:
     @cached_property
     def shot(self) -> dict[str, Any]:
         """What ``shot.json`` says: shots, keyframes, findings."""
-        value = read_json(self.layout.shot)
+        value = read_json(self.layout.shot, "delete the folder, render again")
         if not isinstance(value, dict):
             raise DatasetError(f"{self.layout.shot}: not the plan of a shot; render the sequence again")
         return value

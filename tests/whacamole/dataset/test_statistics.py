@@ -1,6 +1,7 @@
 """Counts against counts made another way; the card says them."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -107,3 +108,12 @@ def test_the_command_prints_json(whole: Dataset) -> None:
     assert run.exit_code == 0
     assert json.loads(run.stdout)["instances"] == 14
     assert "Shots" in CliRunner().invoke(app, [str(whole.layout.root)]).stdout
+
+
+def test_plots_leave_out_empty_rows_at_the_ends(numbers: Statistics) -> None:
+    spread = Spread((0.0, 1.0, 2.0, 3.0, 4.0))
+    spread.add(np.array([1.5, 3.2, 3.4, 3.6]))
+    shown = statistics_text(replace(numbers, spreads={"distance_m": spread}))
+    rows = shown.partition("```text\n")[2].splitlines()[:4]
+    assert [" ".join(row.split()[:4]) for row in rows[:3]] == ["1 to 2 25.0%", "2 to 3 0.0%", "3 to 4 75.0%"]
+    assert rows[3].startswith("least 1.5")
