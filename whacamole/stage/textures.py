@@ -106,11 +106,28 @@ def asphalt(rng: np.random.Generator, size: int = 512) -> Image:
 
 
 def grass(rng: np.random.Generator, size: int = 512) -> Image:
-    """Short grass with dry patches."""
-    blades, patches = noise(rng, size, 0.5, 30.0), noise(rng, size, 2.0)
+    """Short grass in tufts, with dry patches and fallen leaves."""
+    blades, tufts, patches = noise(rng, size, 0.5, 30.0), noise(rng, size, 1.0, 12.0), noise(rng, size, 2.0)
     green, dry = np.array([0.22, 0.31, 0.12]), np.array([0.42, 0.40, 0.22])
     mix = np.clip(0.35 + 0.25 * patches, 0.0, 1.0)[..., None]
-    return _clipped(((1.0 - mix) * green + mix * dry) * (1.0 + 0.22 * blades[..., None]))
+    shade = 1.0 + 0.20 * blades + 0.18 * np.clip(tufts, -1.5, 1.5)
+    image = ((1.0 - mix) * green + mix * dry) * shade[..., None]
+    _strew_leaves(rng, image, size * size // 1800)
+    return _clipped(image)
+
+
+def _strew_leaves(rng: np.random.Generator, image: Image, count: int) -> None:
+    """Lay ``count`` leaves, ellipses of 5 to 13 pixels in the colours of autumn, on a tileable image."""
+    size = len(image)
+    colors = np.array([[0.55, 0.42, 0.18], [0.42, 0.24, 0.10], [0.62, 0.54, 0.30], [0.30, 0.22, 0.12]])
+    y, x = np.mgrid[-7:8, -7:8].astype(np.float64)
+    for _ in range(count):
+        turn, half = rng.uniform(0.0, np.pi), rng.uniform(2.5, 6.5)
+        along, across = x * np.cos(turn) + y * np.sin(turn), y * np.cos(turn) - x * np.sin(turn)
+        rows, columns = np.nonzero((along / half) ** 2 + (across / (0.55 * half)) ** 2 < 1.0)
+        row, column = rng.integers(0, size, 2)
+        color = colors[rng.integers(len(colors))] * rng.uniform(0.75, 1.25)
+        image[(row + rows) % size, (column + columns) % size] = color
 
 
 def concrete(rng: np.random.Generator, size: int = 512) -> Image:
