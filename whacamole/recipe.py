@@ -154,6 +154,9 @@ class Recipe(BaseModel):
         description="JSON or .npz of the body model's vertices by region, the parts of the contact labels; "
         "none: 21 parts",
     )
+    self_contact: bool = Field(
+        False, description="also label which parts of a person touch other parts of the same person"
+    )
     seed: int = Field(0, ge=0, lt=2**63, description="the one seed of all choices")
     allow_breaches: bool = Field(
         False, description="render a sequence even where no camera was found that keeps all rules"

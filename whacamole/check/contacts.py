@@ -13,7 +13,13 @@ from whacamole.labels.arrays import AnyArray, Float64s
 def check_contacts(sequence: Sequence, again: dict[str, AnyArray], limits: Limits, report: Report) -> None:
     """Hold ``contact.npz`` against the same arrays made anew from the vertices."""
     stored, ids = sequence.contact, sequence.people["track_id"].tolist()
-    if stored["part_names"].tolist() != again["part_names"].tolist():
+    same_parts = stored["part_names"].tolist() == again["part_names"].tolist()
+    if "self_contact" in stored and same_parts:
+        wrong = (stored["self_contact"] != again["self_contact"]).any(axis=(-2, -1))
+        for number, track in enumerate(ids):
+            message = f"track {track}: own parts said to touch that do not, or the other way"
+            report.at_most("contact.self_contact", message, wrong[number].astype(np.float64), 0.0)
+    if not same_parts:
         # Parts from a region file of the user's own. Whatever the parts, the body as a whole has these gaps.
         stored, again = _as_one_part(stored), _as_one_part(again)
     gaps = _difference(stored["ground_distance"], again["ground_distance"], np.inf)

@@ -72,12 +72,17 @@ _MAY_BE_INFINITE = (
 )
 
 
+# Made only where asked for, all together.
+_SELF_CONTACT = {"self_contact": ("P T C C", "b"), "self_apart": ("", "f")}
+
+
 def check_contract(sequence: Sequence, report: Report) -> bool:
     """Note every breach; return whether the other checks can go on."""
     before = len(report.found)
     sizes = {"T": len(sequence), "P": len(sequence.people.get("track_id", ()))}
     sizes["C"] = len(sequence.contact.get("part_names", ()))
-    for file, table in (("camera", _CAMERA), ("people", _PEOPLE), ("contact", _CONTACT)):
+    contact = _CONTACT | (_SELF_CONTACT if "self_contact" in sequence.contact else {})
+    for file, table in (("camera", _CAMERA), ("people", _PEOPLE), ("contact", contact)):
         _check_file(file, table, getattr(sequence, file), sizes, report)
     if len(report.found) > before:
         return False

@@ -91,6 +91,7 @@ class SequenceAudit:
             len(self._sequence),
             float(self._sequence.camera["fps"]),
             limits=limits,
+            self_contact="self_contact" in contact,
         )
         window: deque[_Frame] = deque(maxlen=REACH + 1)
         bodies: deque[list[Floats]] = deque(maxlen=3)

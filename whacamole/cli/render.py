@@ -100,6 +100,10 @@ def render(
             show_default="21 parts",
         ),
     ] = None,
+    self_contact: Annotated[
+        bool | None,
+        typer.Option("--self-contact", help="Label people who touch themselves, too.", show_default="off"),
+    ] = None,
     seed: Annotated[int | None, typer.Option(help="The one seed of all choices.", show_default="0")] = None,
     limit: Annotated[
         int | None, typer.Option(help="Make at most so many sequences.", show_default="no limit")
@@ -182,7 +186,7 @@ def render(
         "motion_blur": motion_blur, "f_number": f_number, "exposure": exposure, "noise": noise,
         "size": size, "fps": fps, "quality": quality, "engine": engine, "passes": passes,
         "image_format": image_format, "body_model": body_model, "textures": textures,
-        "contact_regions": contact_regions, "seed": seed, "limit": limit,
+        "contact_regions": contact_regions, "self_contact": self_contact, "seed": seed, "limit": limit,
         "allow_breaches": allow_breaches,
     }  # fmt: skip
     overrides: dict[str, Any] = {name: value for name, value in given.items() if value is not None}

@@ -10,6 +10,7 @@ from whacamole.labels.arrays import AnyArray, Bools, Floats
 from whacamole.labels.ground import ContactThresholds, PartRows, ground_vertices
 from whacamole.labels.parts import BodyParts, skinning_parts
 from whacamole.labels.patches import PosedSkin, SkinMap
+from whacamole.labels.selftouch import SELF_APART, self_touch, separable_parts
 from whacamole.labels.skin import OuterSkin
 from whacamole.labels.touch import EXACT_WITHIN, touch
 
@@ -24,6 +25,7 @@ class ContactLabels:
         fps: frames per second.
         limits: what counts as contact.
         parts: the C parts; by default :func:`whacamole.labels.parts.skinning_parts`.
+        self_contact: also label which parts of a person touch others of their own.
     """
 
     def __init__(
@@ -35,6 +37,7 @@ class ContactLabels:
         *,
         limits: ContactThresholds | None = None,
         parts: BodyParts | None = None,
+        self_contact: bool = False,
     ) -> None:
         self._fps = fps
         self._limits = limits or ContactThresholds()
@@ -50,7 +53,13 @@ class ContactLabels:
         self._person_contact = np.zeros(pairs, dtype=np.bool_)
         self._person_distance = np.full(pairs, np.inf, dtype=np.float32)
         self._person_part = np.full(pairs, -1, dtype=np.int16)
-        self._map = SkinMap.build(self._skin, self._parts, model.v_template) if num_people > 1 else None
+        wanted = num_people > 1 or self_contact
+        self._map = SkinMap.build(self._skin, self._parts, model.v_template) if wanted else None
+        self._self_contact: Bools | None = None
+        if self_contact and self._map is not None:
+            rest = self._skin.close(model.v_template)
+            self._separable = separable_parts(self._map, rest, len(self._parts.names))
+            self._self_contact = np.zeros((*shape, len(self._parts.names)), dtype=np.bool_)
         self._bits = np.zeros((num_people, num_frames, -(-model.num_vertices // 8)), dtype=np.uint8)
 
     def add(
@@ -87,6 +96,9 @@ class ContactLabels:
         if self._map is None:
             return touching
         skins = [PosedSkin(self._map, self._skin.close(body)) for body in now]
+        if self._self_contact is not None:
+            for number, skin in enumerate(skins):
+                self._self_contact[number, frame] = self_touch(skin, self._separable, self._limits.person)
         for one, other in combinations(range(len(now)), 2):
             seen = touch(skins[one], skins[other], len(self._parts.names), self._limits.person)
             for pair, side in zip(((one, other), (other, one)), seen, strict=True):
@@ -99,7 +111,10 @@ class ContactLabels:
 
     def arrays(self) -> dict[str, AnyArray]:
         """All keys of ``contact.npz``."""
-        return {
+        own: dict[str, AnyArray] = {}
+        if self._self_contact is not None:
+            own = {"self_contact": self._self_contact, "self_apart": np.array(SELF_APART)}
+        return own | {
             "part_names": np.array(self._parts.names, dtype=np.str_),
             "ground_contact": self._ground_contact,
             "ground_distance": self._ground_distance,

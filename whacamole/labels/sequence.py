@@ -37,6 +37,7 @@ def label_sequence(
     *,
     limits: ContactThresholds | None = None,
     parts: BodyParts | None = None,
+    self_contact: bool = False,
     film: Film | None = None,
     on_frame: Callable[[int], None] | None = None,
 ) -> SequenceLabels:
@@ -49,6 +50,7 @@ def label_sequence(
         images: gives the rendered mask (and depth, if any) of a frame; called once a frame, in order.
         limits: what counts as contact.
         parts: body parts for the contact labels; by default those of the model's skinning weights.
+        self_contact: also label which parts of a person touch others of their own.
         film: how the pictures were exposed.
         on_frame: told after each frame.
 
@@ -57,7 +59,15 @@ def label_sequence(
     """
     rounded = [replace(person, params=stored_params(person.params)) for person in people]
     seen = PeopleLabels(rounded, model, camera)
-    touched = ContactLabels(model, len(people), camera.num_frames, camera.fps, limits=limits, parts=parts)
+    touched = ContactLabels(
+        model,
+        len(people),
+        camera.num_frames,
+        camera.fps,
+        limits=limits,
+        parts=parts,
+        self_contact=self_contact,
+    )
     for frame, (before, now, after) in enumerate(_windows(posed_frames(rounded, model))):
         seen.add(frame, now, images(frame))
         touched.add(frame, before, now, after)

@@ -19,6 +19,7 @@ from whacamole.labels.camera import Film
 from whacamole.labels.cutout import Cutout
 from whacamole.labels.mesh import triangulated
 from whacamole.labels.people import WorldMesh
+from whacamole.recipe import Recipe
 from whacamole.take import Performer, Take
 
 __all__ = ["worn_over", "write_labels"]
@@ -33,7 +34,7 @@ def write_labels(
     film: Film,
     ready: Callable[[int], None],
     on_frame: Callable[[int], None],
-    regions: Path | None = None,
+    recipe: Recipe,
 ) -> dict[str, NDArray[Any]]:
     """Write the three ``.npz`` files and ``shot.json``; return the arrays of ``people.npz``.
 
@@ -42,7 +43,7 @@ def write_labels(
         film: how they were exposed.
         ready: called before the images of a frame are read; returns when they are there.
         on_frame: told after each frame.
-        regions: file of the parts for the contact labels; None: the 21 parts of any body.
+        recipe: says which contacts are labelled, and by which parts.
 
     Raises:
         BodyModelError: the region file cannot be used.
@@ -54,8 +55,19 @@ def write_labels(
         return FrameImages(mask, read_exr(frames / PASSES["depth"].file(frame))["Z"])
 
     people = [_labelled(person) for person in take.performers]
-    parts = None if regions is None else read_regions(regions, body.num_vertices)
-    labels = label_sequence(people, body, plan.path, images, parts=parts, film=film, on_frame=on_frame)
+    parts = None
+    if recipe.contact_regions is not None:
+        parts = read_regions(recipe.contact_regions, body.num_vertices)
+    labels = label_sequence(
+        people,
+        body,
+        plan.path,
+        images,
+        parts=parts,
+        self_contact=recipe.self_contact,
+        film=film,
+        on_frame=on_frame,
+    )
     write_arrays(sequence.camera, labels.camera)
     write_arrays(sequence.people, labels.people)
     write_arrays(sequence.contact, labels.contact)

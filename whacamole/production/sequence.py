@@ -131,7 +131,7 @@ def _make_in(
         folder,
         render,
         lambda ready, done: write_labels(
-            take, plan, body, folder / "out", sequence, film, ready, done, recipe.contact_regions
+            take, plan, body, folder / "out", sequence, film, ready, done, recipe
         ),
         say,
         take.num_frames,

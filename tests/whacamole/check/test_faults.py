@@ -325,6 +325,26 @@ def test_contact_by_regions_of_the_users_own(dataset, sequence):
     assert labels(audit(dataset)) == {"contact.person_contact_part"}
 
 
+def test_self_contact_that_does_not_follow(dataset, sequence):
+    people, model = load(sequence.people), BodyModel.embedded()
+    frames = len(people["valid"][0])
+    made = ContactLabels(model, 2, frames, 30.0, self_contact=True)
+    cast = [
+        LabelledPerson(number + 1, "stroll", "neutral", BodyParams.from_arrays(people, "world", number))
+        for number in range(2)
+    ]
+    for frame, now in enumerate(posed_frames(cast, model)):
+        made.add(frame, None, now, None)
+    own = {name: made.arrays()[name] for name in ("self_contact", "self_apart")}
+    change(sequence.contact, **own)
+    assert not audit(dataset).lines()[:-1]
+    own["self_contact"][1, 3, 0, 11] ^= True
+    change(sequence.contact, **own)
+    assert labels(audit(dataset)) == {"contact.self_contact"}
+    change(sequence.contact, self_contact=own["self_contact"][..., :3])
+    assert labels(audit(dataset)) == {"contact.self_contact"}
+
+
 def test_spoiled_boxes_and_visibility(dataset, sequence):
     people = load(sequence.people)
     change(
