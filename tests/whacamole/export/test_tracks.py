@@ -1,6 +1,7 @@
 """Formats of whole sequences: EMDB, TUM, nerfstudio, AMASS, MP4, each read back by another's reader."""
 
 import json
+import shutil
 from fractions import Fraction
 from pathlib import Path
 
@@ -11,7 +12,10 @@ import smplx
 import torch
 from evo.tools import file_interface
 
-from whacamole.dataset import Dataset
+import whacamole
+from whacamole.dataset import Dataset, write_summary
+from whacamole.dataset.video import write_video
+from whacamole.errors import DatasetError
 from whacamole.evaluation.truth.emdb import EmdbTruth
 from whacamole.export import export_dataset
 from whacamole.export.emdb import SMPL_REST_PELVIS
@@ -118,6 +122,26 @@ def test_mp4_has_every_frame_at_its_time(data: Dataset, tmp_path: Path) -> None:
     assert times == [Fraction(number, 30) for number in range(4)]
     for number, picture in enumerate(pictures):
         assert np.abs(picture[:, :97] - sequence.rgb(number)).mean() < 6.0
+
+
+def test_mp4_of_a_dataset_whose_frames_are_a_video(data: Dataset, tmp_path: Path) -> None:
+    root = tmp_path / "dataset"
+    shutil.copytree(data.layout.root, root)
+    for sequence in whacamole.open(root):
+        frames = [np.ascontiguousarray(sequence.rgb(number)[:, :96]) for number in range(len(sequence))]
+        write_video(sequence.layout.video, frames, 30.0)
+        shutil.rmtree(sequence.layout.folder / "rgb")
+        facts = {key: value for key, value in sequence.facts.items() if key != "checksums"}
+        write_summary(sequence.layout, facts | {"image_format": "mp4", "width": 96})
+    video = whacamole.open(root)
+    export_dataset(video, "mp4", tmp_path / "out")
+    with av.open(str(tmp_path / "out" / "duet-00.mp4")) as container:
+        pictures = [frame.to_ndarray(format="rgb24").astype(float) for frame in container.decode(video=0)]
+    assert len(pictures) == len(video["duet-00"])
+    for number, picture in enumerate(pictures):
+        assert np.abs(picture - data["duet-00"].rgb(number)[:, :96]).mean() < 8.0
+    with pytest.raises(DatasetError, match="lists single images"):
+        export_dataset(video, "nerfstudio", tmp_path / "scene")
 
 
 def test_a_zooming_camera_is_left_out_of_emdb(
