@@ -99,7 +99,7 @@ def labels_and_folder(tmp_path_factory: pytest.TempPathFactory) -> tuple[Sequenc
     params = [_person(model, -0.5, 0.05, rng), _person(model, 0.6, -0.08, rng)]
     people = [LabelledPerson(i + 1, "walk", "neutral", each) for i, each in enumerate(params)]
     images = _images(params, model, camera)
-    labels = label_sequence(people, model, camera, lambda frame: images[frame])
+    labels = label_sequence(people, model, camera, lambda frame: images[frame], self_contact=True)
     folder = tmp_path_factory.mktemp("documentation")
     _write(DatasetLayout(folder / "dataset"), labels, images)
     return labels, folder
