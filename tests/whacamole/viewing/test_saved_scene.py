@@ -63,8 +63,11 @@ def test_it_plays_forward_and_back(dataset: Dataset, tmp_path: Path) -> None:
         tab.open(page)
         tab.wait("document.querySelector('.mantine-Slider-root') !== null")
         tab.value("new Promise(done => setTimeout(done, 3000))")
-        first, last = _at(tab, 0.05), _at(tab, 0.97)
-        again = _at(tab, 0.05)
+        # The viewer draws coarser while the machine is busy: a round in which that changed tells nothing.
+        for _ in range(5):
+            first, last, again = (_at(tab, share) for share in (0.05, 0.97, 0.05))
+            if np.mean(np.abs(first.astype(int) - again) > 8) < 0.002:
+                break
         assert tab.value("document.title") == "walk-00"
         assert "touches the ground" in tab.value("document.querySelector('#about').innerText")
         assert tab.errors == []
