@@ -80,11 +80,6 @@ def explain_failure(name: str, output: str, status: int) -> Probe:
     return Probe(name, False, last, UNKNOWN_REMEDY.format(name=name))
 
 
-def probe_all() -> list[Probe]:
-    """Try everything there is to try; takes some seconds."""
-    return [probe(name) for name in TRIES]
-
-
 def choose_engine(wanted: str = "auto") -> tuple[str, str]:
     """Settle which engine renders; asks the machine where the answer is not given.
 
