@@ -44,12 +44,20 @@ class Scale:
 
     The fraction is that of the whole height of the person. Above 1 a part is seen: at 1.4 a frame centred
     on the neck reaches from over the head to the thighs.
+
+    Full and long shots fill it as projected, from any angle. Closer shots fill it as seen from eye level, and
+    keep that distance at other angles: legs out of the view, foreshortened from above, would draw a camera
+    at 40° to within 0.8 m of the neck, and a medium shot would be a close-up.
     """
 
     name: str
     anchor: str
     frac_min: float
     frac_max: float
+
+    def measured_from(self, theta: Array | float) -> Array | float:
+        """The polar angle [rad] at which the fraction holds for a camera at `theta`."""
+        return theta if self.anchor == "pelvis" else np.pi / 2.0
 
 
 SCALES: Mapping[str, Scale] = {
@@ -106,20 +114,22 @@ class Scene:
         """
         subject, lens = self.subject, self.lens
         above, below = (float(at(signal, frame)) for signal in subject.extent(scale.anchor))
+        polar = scale.measured_from(theta)
         wide = (
             at(subject.span, frame) if scale.anchor == "pelvis" else 2.0 * (at(subject.spread, frame) + HEAD)
         )
         r = max(
-            float(framing_radius(above, below, frac, theta, focal, lens.height)),
+            float(framing_radius(above, below, frac, polar, focal, lens.height)),
             focal * float(wide) / (WIDTH_SHARE * lens.width),
             float(at(subject.reach(scale.anchor), frame)) + STAND_OFF,
         )
-        return r, float(achieved_fraction(above, below, r, theta, focal, lens.height))
+        return r, float(achieved_fraction(above, below, r, polar, focal, lens.height))
 
     def fraction(self, frame: float, r: float, theta: float, scale: Scale, focal: float) -> float:
         """The fraction of the height of the view that the people fill from (r, θ)."""
         above, below = (at(signal, frame) for signal in self.subject.extent(scale.anchor))
-        return float(achieved_fraction(above, below, r, theta, focal, self.lens.height))
+        polar = scale.measured_from(theta)
+        return float(achieved_fraction(above, below, r, polar, focal, self.lens.height))
 
     def lowest_theta(self, lo: int, hi: int, r: float, scale: Scale) -> float:
         """The largest polar angle [rad] that keeps a camera at `r` over the ground from `lo` to `hi`."""

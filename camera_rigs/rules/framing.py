@@ -4,7 +4,7 @@ import numpy as np
 
 from camera_rigs.lens import achieved_fraction
 from camera_rigs.rules.evidence import Evidence, Finding, worst
-from camera_rigs.scene import SCALES
+from camera_rigs.scene import SCALES, Scale
 from camera_rigs.shots.catalogue import KINDS
 from camera_rigs.smoothing import at
 from camera_rigs.spherical import Array, cartesian_to_spherical, wrap
@@ -99,11 +99,11 @@ def fraction(evidence: Evidence) -> list[Finding]:
     """At keyframes that ask for a fraction of the view the people fill it."""
     findings = []
     for shot, keyframes in evidence.settled_keyframes():
-        anchor = SCALES[shot.scale].anchor
+        scale = SCALES[shot.scale]
         asked = [(k.frame, k.frac) for k in keyframes if k.frac is not None]
         if not asked:
             continue
-        errors = [abs(_achieved(evidence, anchor, frame) / frac - 1.0) for frame, frac in asked]
+        errors = [abs(_achieved(evidence, scale, frame) / frac - 1.0) for frame, frac in asked]
         slack = 0.0
         if evidence.shake is not None:
             slack = 2.0 * evidence.shake.bound(0) * float(np.sqrt(3.0)) / min(k.r for k in keyframes)
@@ -112,10 +112,11 @@ def fraction(evidence: Evidence) -> list[Finding]:
     return findings
 
 
-def _achieved(evidence: Evidence, anchor: str, frame: float) -> float:
+def _achieved(evidence: Evidence, scale: Scale, frame: float) -> float:
     """The fraction of the height of the view that the people fill at a frame of the path."""
     subject = evidence.subject
-    r, theta, _ = cartesian_to_spherical(evidence.location_at(frame) - at(subject.anchor(anchor), frame))
-    above, below = (at(signal, frame) for signal in subject.extent(anchor))
+    offset = evidence.location_at(frame) - at(subject.anchor(scale.anchor), frame)
+    r, theta, _ = cartesian_to_spherical(offset)
+    above, below = (at(signal, frame) for signal in subject.extent(scale.anchor))
     focal = at(evidence.path.focal, frame - evidence.first)
-    return float(achieved_fraction(above, below, r, theta, focal, evidence.path.height))
+    return float(achieved_fraction(above, below, r, scale.measured_from(theta), focal, evidence.path.height))

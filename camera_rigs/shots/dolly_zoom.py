@@ -26,12 +26,13 @@ def plan_dolly_zoom(scene: Scene, span: Span, view: View, *, radius: float) -> D
     frac = scene.fraction(span.start, view.r, view.theta, view.scale, view.focal)
     above, below = scene.subject.extent(view.scale.anchor)
     direction = spherical_to_cartesian(1.0, view.theta, view.phi + heading)
+    polar = view.scale.measured_from(view.theta)
+    sin_e, cos_e = np.cos(polar), np.sin(polar)
 
     def zoom(frames: Array) -> tuple[Array, Array]:
         progress = span.progress(frames)
         r = view.r + (radius - view.r) * progress
         a, b = ((1.0 - progress) * side[span.start] + progress * side[span.end] for side in (above, below))
-        sin_e, cos_e = np.cos(view.theta), np.sin(view.theta)
         focal = frac * scene.lens.height * (r - a * sin_e) * (r + b * sin_e) / (cos_e * r * (a + b))
         return scene.anchor(view.scale, frames) + r[..., None] * direction, focal
 

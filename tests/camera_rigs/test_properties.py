@@ -76,15 +76,22 @@ def test_no_nan_no_flip_no_breach(subject, lens, shots, seed):
     theta=st.floats(50.0, 105.0),
 )
 def test_the_framing_fills_what_it_says(subject, lens, scale, part, theta):
-    """The extent is projected as two points, a second way to the closed form."""
+    """The extent is projected as two points, a second way to the closed form; face on in closer shots."""
     scene, polar = Scene(subject, lens), np.radians(theta)
     asked = scale.frac_min + part * (scale.frac_max - scale.frac_min)
     r, frac = scene.framing(0, asked, polar, scale, lens.focal)
     assert frac <= asked * (1.0 + 1e-9)
     above, below = (float(signal[0]) for signal in subject.extent(scale.anchor))
-    depth = r - np.array([above, -below]) * np.cos(polar)
-    image = lens.focal * np.array([above, -below]) * np.sin(polar) / depth
+    image = lens.focal * image_of(scale, above, below, r, polar)
     assert (image[0] - image[1]) / lens.height == pytest.approx(frac, rel=1e-6)
+
+
+def image_of(scale, above, below, r, theta):
+    """Where head and feet lie over the anchor in an image of focal length 1."""
+    ends = np.array([above, -below])
+    if scale.anchor == "neck":
+        return ends / r
+    return ends * np.sin(theta) / (r - ends * np.cos(theta))
 
 
 @settings(max_examples=60, deadline=None, derandomize=True)
@@ -92,14 +99,13 @@ def test_the_framing_fills_what_it_says(subject, lens, scale, part, theta):
 def test_fractions_that_were_asked_for_are_in_the_finished_path(subject, lens, seed):
     plan = direct(subject, lens, World(), ["push-pull", "push", "pull"], np.random.default_rng(seed))
     for shot in plan.shots:
-        anchor = SCALES[shot.scale].anchor
+        scale = SCALES[shot.scale]
         for k in shot.keyframes:
             if k.frac is None or not float(k.frame).is_integer():
                 continue
             frame = int(k.frame)
-            offset = plan.path.location[frame] - plan.subject.anchor(anchor)[frame]
+            offset = plan.path.location[frame] - plan.subject.anchor(scale.anchor)[frame]
             r, theta, _ = cartesian_to_spherical(offset)
-            above, below = (float(signal[frame]) for signal in plan.subject.extent(anchor))
-            depth = r - np.array([above, -below]) * np.cos(theta)
-            image = plan.path.focal[frame] * np.array([above, -below]) * np.sin(theta) / depth
+            above, below = (float(signal[frame]) for signal in plan.subject.extent(scale.anchor))
+            image = plan.path.focal[frame] * image_of(scale, above, below, r, theta)
             assert (image[0] - image[1]) / lens.height == pytest.approx(k.frac, rel=0.02)

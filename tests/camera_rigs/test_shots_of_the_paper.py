@@ -97,25 +97,38 @@ def test_vertical_arcs_pass_between_high_eye_level_and_low_angles(rig):
 
 
 @pytest.mark.parametrize("size", [(640, 360), (360, 640), (512, 512), (1000, 400)])
-@pytest.mark.parametrize(
-    ("scale", "theta"),
-    [
-        (scale, theta)
-        for scale in SCALES
-        for theta in (60.0, 90.0, 100.0)
-        if (scale, theta) != ("close-up", 60.0)  # from above, the camera of a close-up must stand off
-    ],
-)
+@pytest.mark.parametrize("theta", [60.0, 90.0, 100.0])
+@pytest.mark.parametrize("scale", SCALES)
 def test_push_and_pull_fill_the_fraction_within_two_percent(rig, size, scale, theta):
-    """The projected height of the person, in the image, at the keyframe that asks for it."""
+    """The projected height at the keyframe that asks for it: of the person, or, where only a part is shown,
+    of a rod as long as the person held square to the view at the neck."""
     scene = rig.scene(rig.stander(half_width=0.05), lens=rig.lens(*size, millimetres=50.0))
     low, high = SCALES[scale].frac_min, 0.9 * SCALES[scale].frac_max
     for planner, start, frac in ((plan_push, low, high), (plan_pull, high, low)):
         draft = planner(scene, rig.whole(scene), rig.view(scene, scale, start, theta), frac=frac)
-        pixels, _ = rig.path_of(draft, scene).project(head_and_feet(rig, 90))
+        path = rig.path_of(draft, scene)
+        ends = head_and_feet(rig, 90)
+        if SCALES[scale].anchor == "neck":
+            rod = 0.5 * rig.height * path.T_world_camera[:, None, :3, 1]
+            neck = scene.subject.neck[:, None]
+            ends = np.concatenate([neck - rod, neck + rod], axis=1)
+        pixels, _ = path.project(ends)
         filled = (pixels[-1, 1, 1] - pixels[-1, 0, 1]) / size[1]
         assert filled == pytest.approx(frac, rel=0.02)
         assert draft.shot.keyframes[-1].frac == pytest.approx(frac)
+
+
+@pytest.mark.parametrize("theta", [40.0, 60.0, 90.0, 105.0])
+def test_a_medium_shot_is_one_from_any_angle(rig, theta):
+    """Head and hips (0.52 m below the neck) are in the view at a fraction of 1.5, from high above as well."""
+    scene = rig.scene(rig.stander(), lens=rig.lens(640, 360, millimetres=35.0))
+    view = rig.view(scene, "medium", 1.5, theta)
+    draft = plan_push_pull(scene, rig.whole(scene), view, fracs=[1.5, 1.5])
+    neck = scene.subject.neck
+    points = neck[:, None] + np.array([[0.0, 0.0, 0.25], [0.0, 0.0, -0.52]])
+    pixels, depth = rig.path_of(draft, scene).project(points)
+    assert (depth > 0.5).all()
+    assert ((pixels[..., 1] > 0.0) & (pixels[..., 1] < 360.0)).all()
 
 
 def head_and_feet(rig, frames):
