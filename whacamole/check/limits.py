@@ -19,8 +19,11 @@ class Limits:
         how much deeper counts [m]. hands: share of the pixels of hands that may stray, over the sequence.
         flow: median of flow against projected motion, in x and in y [px]. visible: stored visible fraction
         against what masks and bodies allow. contact: gaps against gaps recomputed from the vertices [m].
-        bits: share of vertices whose contact differs. order_labels: how much better another frame's picture
-        must fit the labels to be taken for the right one. order_rgb: the same for the colour frame.
+        bits: share of vertices whose contact differs. unit: length of a normal against 1, or 0 where nothing
+        is hit. away: share of pixels whose normal faces away from the camera. askew: share of a person's
+        even pixels whose normal is far off the slope of the depth. askew_scenery: the same of everything
+        else, which may have relief painted on. order_labels: how much better another frame's picture must
+        fit the labels to be taken for the right one. order_rgb: the same for the colour frame.
     """
 
     rigid: float = 1e-6
@@ -40,5 +43,9 @@ class Limits:
     visible: float = 0.02
     contact: float = 1e-3
     bits: float = 1e-3
+    unit: float = 1e-3
+    away: float = 0.01
+    askew: float = 0.15
+    askew_scenery: float = 0.15
     order_labels: float = 1.05
     order_rgb: float = 1.12

@@ -10,6 +10,7 @@ from whacamole.check.bodies import Posed
 from whacamole.check.contacts import check_contacts
 from whacamole.check.findings import Report
 from whacamole.check.limits import Limits
+from whacamole.check.normals import NormalAudit
 from whacamole.check.order import REACH, colour_edges, correlation, label_edges, report_order
 from whacamole.check.pixels import (
     Drawn,
@@ -74,6 +75,7 @@ class SequenceAudit:
         self._unknown = np.zeros(len(sequence))
         self._low = np.inf
         width = 2 * REACH + 1
+        self._normals = NormalAudit(sequence, limits)
         self._label_band = np.full((len(sequence), width), np.nan)
         self._colour_band = np.full((len(sequence), width), np.nan)
 
@@ -127,6 +129,10 @@ class SequenceAudit:
             rgb = self._read("rgb", number)
             colours = None if rgb is None else colour_edges(rgb)
             self._measure(number, drawn, shown)
+            if "normal" in sequence.facts["passes"]:
+                normal = self._read("normal", number)
+                if normal is not None:
+                    self._normals.add(number, shown.mask, shown.depth, normal)
         return _Frame(number, drawn, shown, colours, edges)
 
     def _shown(self, number: int) -> Shown | None:
@@ -245,6 +251,7 @@ class SequenceAudit:
                 report.add(
                     "people.left_hand_pose", f"track {track}: share of hand pixels off", share, limits.hands
                 )
+        self._normals.tell(report)
         report_order("mask", self._label_band, limits.order_labels, report)
         report_order("rgb", self._colour_band, limits.order_rgb, report)
         if abs(self._low) > limits.ground:

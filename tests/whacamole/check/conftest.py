@@ -10,7 +10,7 @@ from PIL import Image
 from camera_rigs import CameraPath
 from render_jobs.images import write_exr, write_mask
 from render_jobs.passes import PASSES
-from whacamole.body import BodyModel, BodyParams
+from whacamole.body import BodyModel, BodyParams, vertex_normals
 from whacamole.dataset import DatasetLayout, SequenceLayout, write_index, write_summary
 from whacamole.dataset.files import write_arrays, write_json
 from whacamole.dataset.splitting import refresh_splits
@@ -20,7 +20,7 @@ from whacamole.labels.people import to_camera
 from whacamole.labels.sequence import posed_frames
 
 FRAMES, WIDTH, HEIGHT = 8, 240, 180
-PASS_NAMES = ["rgb", "mask", "depth", "flow"]
+PASS_NAMES = ["rgb", "mask", "depth", "normal", "flow"]
 
 
 def walker(x: float, y: float, speed: float, phase: float, shape: float) -> BodyParams:
@@ -92,18 +92,45 @@ def draw(people, model, camera):
     return drawn
 
 
+def on_body(values, corners, weight):
+    """Values ``(V, 3)`` of the vertices, at points inside triangles."""
+    a, b, c = (values[corners[:, k]].astype(float) for k in range(3))
+    return a + weight[:, :1] * (b - a) + weight[:, 1:2] * (c - a)
+
+
+def seen_triangles(drawn, number, model):
+    """Pixels of a body, corners of the triangles there, and the weights of the second and third corner."""
+    raster, points, bodies = drawn
+    seen = raster.mesh == number
+    corners = model.faces[raster.triangle[seen]]
+    a, b, c = (bodies[number][corners[:, k]].astype(float) for k in range(3))
+    frames = np.stack([b - a, c - a, np.cross(b - a, c - a)], axis=-1)
+    return seen, corners, np.linalg.solve(frames, (points[seen] - a)[..., None])[..., 0]
+
+
+def normals_of(drawn, model, view):
+    """Smooth normals of the bodies, flat ones of the stage, in the camera frame and towards it."""
+    raster, points, bodies = drawn
+    world = np.zeros(points.shape)
+    for number, body in enumerate(bodies):
+        seen, corners, weight = seen_triangles(drawn, number, model)
+        world[seen] = on_body(vertex_normals(body.astype(float), model.faces), corners, weight)
+    for number, (corners, _) in enumerate(stage(), len(bodies)):
+        world[raster.mesh == number] = np.cross(corners[1] - corners[0], corners[2] - corners[0])
+    normal = world @ view[:3, :3].T
+    away = (normal * to_camera(points.reshape(-1, 3), view).reshape(points.shape)).sum(axis=-1) > 0
+    normal[away] *= -1
+    length = np.linalg.norm(normal, axis=-1, keepdims=True)
+    return np.divide(normal, length, out=np.zeros_like(normal), where=length > 0).astype(np.float32)
+
+
 def flow_of(frame, drawn, model, camera):
     """Motion of the point at each pixel to the next frame: with its triangle, or with the stage."""
-    raster, points, bodies = drawn[frame]
+    _, points, bodies = drawn[frame]
     after = points.copy()
-    for number, body in enumerate(bodies):
-        seen = raster.mesh == number
-        corners = model.faces[raster.triangle[seen]]
-        a, b, c = (body[corners[:, k]].astype(float) for k in range(3))
-        frames = np.stack([b - a, c - a, np.cross(b - a, c - a)], axis=-1)
-        weight = np.linalg.solve(frames, (points[seen] - a)[..., None])[..., 0]
-        a, b, c = (drawn[frame + 1][2][number][corners[:, k]].astype(float) for k in range(3))
-        after[seen] = a + weight[:, :1] * (b - a) + weight[:, 1:2] * (c - a)
+    for number in range(len(bodies)):
+        seen, corners, weight = seen_triangles(drawn[frame], number, model)
+        after[seen] = on_body(drawn[frame + 1][2][number], corners, weight)
     here = project_points(to_camera(points, camera.T_camera_world[frame]), camera.K[frame])
     there = project_points(to_camera(after, camera.T_camera_world[frame + 1]), camera.K[frame + 1])
     return (there - here).astype(np.float32)
@@ -132,6 +159,8 @@ def write_sequence(sequence: SequenceLayout, model: BodyModel) -> None:
         Image.fromarray(colours(points, raster.mesh)).save(place("rgb"))
         write_mask(place("mask"), mask, 2)
         write_exr(place("depth"), PASSES["depth"], depth)
+        view = camera.T_camera_world[frame]
+        write_exr(place("normal"), PASSES["normal"], normals_of(drawn[frame], model, view))
         write_exr(place("flow"), PASSES["flow"], flow_of(frame, drawn, model, camera))
     people = [LabelledPerson(p.track_id, p.motion_id, p.gender, p.params.slice(0, FRAMES)) for p in longer]
     shorter = CameraPath(camera.K[:FRAMES], camera.T_world_camera[:FRAMES], 30.0, WIDTH, HEIGHT)
