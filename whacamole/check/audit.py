@@ -10,6 +10,7 @@ from whacamole.check.contract import check_contract
 from whacamole.check.files import check_files, check_index, check_splits, read_index
 from whacamole.check.findings import Finding, Findings, Report
 from whacamole.check.limits import Limits
+from whacamole.check.regions import ContactParts
 from whacamole.check.sequence import SequenceAudit
 from whacamole.dataset import Dataset, Sequence
 from whacamole.errors import DatasetError
@@ -20,6 +21,7 @@ def check_dataset(
     *,
     checksums: bool = True,
     body_model: BodyModel | None = None,
+    contact_regions: Path | None = None,
     limits: Limits | None = None,
     on_sequence: Callable[[str], None] | None = None,
 ) -> Findings:
@@ -29,13 +31,18 @@ def check_dataset(
         path: the dataset's folder.
         checksums: compare every file with the sha256 noted when it was written.
         body_model: the model the labels refer to; by default the embedded one.
+        contact_regions: the region file that names the parts of ``contact.npz``, if the dataset was made with
+            one; by default the file that its recipe names, where that is still there.
         limits: what is sound.
         on_sequence: told the id of each sequence before its turn.
 
     Raises:
         DatasetError: there is no dataset at ``path``.
+        BodyModelError: ``contact_regions`` is no region file of this body.
     """
     data = read_index(Path(path))
+    model = body_model or BodyModel.embedded()
+    parts = ContactParts(data, model, contact_regions)
     whole = Report("")
     check_index(data, whole)
     found: list[Finding] = []
@@ -49,12 +56,10 @@ def check_dataset(
         if sequence is not None:
             motions[sequence_id] = str(sequence.facts["motion_id"])
             frames += len(sequence)
-            _check_sequence(
-                sequence, body_model or BodyModel.embedded(), limits or Limits(), report, checksums
-            )
+            _check_sequence(sequence, model, parts, limits or Limits(), report, checksums)
         found += report.found
     check_splits(data, motions, whole)
-    return Findings((*whole.found, *found), len(data.ids), frames)
+    return Findings((*whole.found, *found), len(data.ids), frames, parts.notes())
 
 
 def _open(data: Dataset, sequence_id: str, report: Report) -> Sequence | None:
@@ -69,7 +74,12 @@ def _open(data: Dataset, sequence_id: str, report: Report) -> Sequence | None:
 
 
 def _check_sequence(
-    sequence: Sequence, model: BodyModel, limits: Limits, report: Report, checksums: bool
+    sequence: Sequence,
+    model: BodyModel,
+    parts: ContactParts,
+    limits: Limits,
+    report: Report,
+    checksums: bool,
 ) -> None:
     """All checks of one sequence, as far as its files allow."""
     readable = check_files(sequence, report, checksums=checksums)
@@ -97,4 +107,4 @@ def _check_sequence(
         return
     posed = pose_people(sequence, model)
     check_bodies(sequence, posed, limits, report)
-    SequenceAudit(sequence, posed, limits, report).run()
+    SequenceAudit(sequence, posed, parts.of(sequence, report), limits, report).run()

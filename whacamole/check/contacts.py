@@ -20,7 +20,7 @@ def check_contacts(sequence: Sequence, again: dict[str, AnyArray], limits: Limit
             message = f"track {track}: own parts said to touch that do not, or the other way"
             report.at_most("contact.self_contact", message, wrong[number].astype(np.float64), 0.0)
     if not same_parts:
-        # Parts from a region file of the user's own. Whatever the parts, the body as a whole has these gaps.
+        # Nobody named the region file. Whatever its parts, the body as a whole has these gaps.
         stored, again = _as_one_part(stored), _as_one_part(again)
     gaps = _difference(stored["ground_distance"], again["ground_distance"], np.inf)
     for number, track in enumerate(ids):

@@ -55,11 +55,13 @@ class Findings:
         findings: in the order of the sequences.
         sequences: how many were audited.
         frames: how many frames they have.
+        notes: what could not be asked, and what it takes; no breaches.
     """
 
     findings: tuple[Finding, ...]
     sequences: int
     frames: int
+    notes: tuple[str, ...] = ()
 
     @property
     def ok(self) -> bool:
@@ -75,18 +77,20 @@ class Findings:
         return len(self.findings)
 
     def lines(self) -> list[str]:
-        """One line a finding, and a summary at the end."""
-        audited = f"{self.sequences} sequences, {self.frames} frames"
-        verdict = "nothing wrong" if self.ok else f"{len(self)} findings"
-        return [*(finding.line() for finding in self.findings), f"{audited}: {verdict}"]
+        """One line a finding, one a note, and a summary at the end."""
+        audited = f"{_counted(self.sequences, 'sequence')}, {_counted(self.frames, 'frame')}"
+        verdict = "nothing wrong" if self.ok else _counted(len(self), "finding")
+        notes = (f"note: {note}" for note in self.notes)
+        return [*(finding.line() for finding in self.findings), *notes, f"{audited}: {verdict}"]
 
     def to_json(self) -> dict[str, Any]:
-        """Plain values: ``ok``, ``sequences``, ``frames`` and ``findings``."""
+        """Plain values: ``ok``, ``sequences``, ``frames``, ``findings`` and ``notes``."""
         return {
             "ok": self.ok,
             "sequences": self.sequences,
             "frames": self.frames,
             "findings": [finding.to_json() for finding in self.findings],
+            "notes": list(self.notes),
         }
 
 
@@ -116,6 +120,10 @@ class Report:
             self.found.append(
                 Finding(self.sequence, worst, label, message, float(values[worst]), limit, end - start)
             )
+
+
+def _counted(number: int, what: str) -> str:
+    return f"{number} {what}" if number == 1 else f"{number} {what}s"
 
 
 def _text(value: Value) -> str:

@@ -28,6 +28,7 @@ from whacamole.dataset import Sequence
 from whacamole.errors import DatasetError
 from whacamole.labels import ContactLabels, ContactThresholds
 from whacamole.labels.arrays import AnyArray, Float64s, Floats
+from whacamole.labels.parts import BodyParts
 from whacamole.labels.visibility import flesh_thickness, joint_visibility
 
 _BLOCK = 16
@@ -50,11 +51,15 @@ class SequenceAudit:
     Args:
         sequence: its label files can be read and keep to the contract.
         posed: its people.
+        parts: those its contacts are named by; None if they are not known.
         limits: what is sound.
         report: takes the findings.
     """
 
-    def __init__(self, sequence: Sequence, posed: Posed, limits: Limits, report: Report) -> None:
+    def __init__(
+        self, sequence: Sequence, posed: Posed, parts: BodyParts | None, limits: Limits, report: Report
+    ) -> None:
+        self._parts = parts
         self._sequence, self._posed, self._limits, self._report = sequence, posed, limits, report
         self._ids = [int(track) for track in sequence.people["track_id"]]
         model = posed.model
@@ -93,7 +98,8 @@ class SequenceAudit:
             len(self._sequence),
             float(self._sequence.camera["fps"]),
             limits=limits,
-            self_contact="self_contact" in contact,
+            parts=self._parts,
+            self_contact="self_contact" in contact and self._parts is not None,
         )
         window: deque[_Frame] = deque(maxlen=REACH + 1)
         bodies: deque[list[Floats]] = deque(maxlen=3)

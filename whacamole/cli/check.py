@@ -20,6 +20,13 @@ def check(
             help="The SMPL-X .npz that the dataset was made with.", show_default="the embedded CC0 body"
         ),
     ] = None,
+    contact_regions: Annotated[
+        Path | None,
+        typer.Option(
+            help="The region file that the dataset's contacts are named by.",
+            show_default="the recipe's, if it is still there",
+        ),
+    ] = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print findings only.")] = False,
     json_output: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
 ) -> None:
@@ -39,6 +46,7 @@ def check(
             dataset,
             checksums=checksums,
             body_model=model,
+            contact_regions=contact_regions,
             on_sequence=lambda sequence_id: status.update(f"auditing {sequence_id}"),
         )
     try:
@@ -48,6 +56,6 @@ def check(
     if json_output:
         typer.echo(json.dumps(found.to_json(), indent=1))
     else:
-        lines = found.lines()
-        typer.echo("\n".join(lines[:-1] if quiet else lines), nl=bool(lines[:-1]) or not quiet)
+        lines = [finding.line() for finding in found] if quiet else found.lines()
+        typer.echo("\n".join(lines), nl=bool(lines))
     raise typer.Exit(0 if found.ok else 1)

@@ -199,3 +199,8 @@ def dataset(sound: Path, tmp_path: Path) -> Path:
     write_index(DatasetLayout(root), {})
     refresh_splits(DatasetLayout(root), 0.0)
     return root
+
+
+@pytest.fixture
+def sequence(dataset: Path) -> SequenceLayout:
+    return DatasetLayout(dataset).sequence("stroll-00")

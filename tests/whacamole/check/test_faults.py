@@ -11,34 +11,11 @@ import pytest
 from PIL import Image
 from scipy.spatial.transform import Rotation
 
+from planted_faults import audit, change, labels, load
 from whacamole.body import BodyModel, BodyParams
-from whacamole.check import Findings, check_dataset
-from whacamole.dataset import DatasetLayout, SequenceLayout
+from whacamole.check import check_dataset
+from whacamole.dataset import SequenceLayout
 from whacamole.dataset.files import write_arrays
-from whacamole.labels import ContactLabels, LabelledPerson, parts_from_regions
-from whacamole.labels.sequence import posed_frames
-
-
-@pytest.fixture
-def sequence(dataset: Path) -> SequenceLayout:
-    return DatasetLayout(dataset).sequence("stroll-00")
-
-
-def audit(dataset: Path) -> Findings:
-    return check_dataset(dataset, checksums=False)
-
-
-def labels(findings: Findings) -> set[str]:
-    return {finding.label for finding in findings}
-
-
-def load(path: Path) -> dict[str, np.ndarray]:
-    with np.load(path, allow_pickle=False) as stored:
-        return dict(stored)
-
-
-def change(path: Path, **arrays: np.ndarray) -> None:
-    write_arrays(path, load(path) | arrays)
 
 
 def swap(a: Path, b: Path) -> None:
@@ -287,111 +264,6 @@ def test_wrong_flow(dataset, sequence):
     found = audit(dataset)
     assert labels(found) == {"flow"}
     assert all("in y" in f.message for f in found)
-
-
-def _change_normals(sequence: SequenceLayout, spoil) -> None:
-    """``spoil(normals (T, H, W, 3), rotations (T, 3, 3) world to camera)`` gives what is stored instead."""
-    from render_jobs.images import read_exr, write_exr
-    from render_jobs.passes import PASSES
-
-    files = sorted((sequence.folder / "normal").glob("*.exr"))
-    stored = np.stack([np.stack([read_exr(file)[axis] for axis in "XYZ"], axis=-1) for file in files])
-    for file, normal in zip(
-        files, spoil(stored, load(sequence.camera)["T_camera_world"][:, :3, :3]), strict=True
-    ):
-        write_exr(file, PASSES["normal"], normal.astype(np.float32))
-
-
-NORMAL_FAULTS = {
-    "in the world frame": lambda normal, R: np.einsum("thwi,tij->thwj", normal, R),
-    "turned into the camera twice": lambda normal, R: np.einsum("thwj,tij->thwi", normal, R),
-    "x flipped": lambda normal, R: normal * [-1, 1, 1],
-    "y flipped": lambda normal, R: normal * [1, -1, 1],
-    "z flipped": lambda normal, R: normal * [1, 1, -1],
-    "x and y exchanged": lambda normal, R: normal[..., [1, 0, 2]],
-}
-
-
-@pytest.mark.parametrize("fault", NORMAL_FAULTS)
-def test_normals_in_another_frame(dataset, sequence, fault):
-    _change_normals(sequence, NORMAL_FAULTS[fault])
-    found = audit(dataset)
-    assert labels(found) == {"normal"}
-    for track in (1, 2):
-        wrong = [f for f in found if f.message.startswith(f"track {track}: share of even pixels")]
-        assert sum(f.frames for f in wrong) == 8
-
-
-@pytest.mark.parametrize(("order", "frame"), [((0, 0, 1, 2, 3, 4, 5, 6), 1), ((0, 1, 2, 4, 3, 5, 6, 7), 3)])
-def test_normals_of_other_frames(dataset, sequence, order, frame):
-    """A frame late, and two exchanged."""
-    _change_normals(sequence, lambda normal, R: normal[list(order)])
-    found = audit(dataset)
-    assert labels(found) == {"normal"}
-    assert "fits better" in " ".join(f.message for f in found)
-    assert frame in {f.frame for f in found}
-
-
-def test_normals_that_are_not_of_unit_length(dataset, sequence):
-    """As a picture keeps them: -1 … 1 made 0 … 1."""
-    _change_normals(sequence, lambda normal, R: normal / 2 + 0.5)
-    assert any("length" in f.message and f.frames == 8 for f in audit(dataset))
-
-
-def test_contact_that_does_not_follow(dataset, sequence):
-    contact = load(sequence.contact)
-    change(
-        sequence.contact,
-        ground_contact=~contact["ground_contact"],
-        person_distance=contact["person_distance"] - np.float32(0.05),
-        vertex_contact=np.zeros_like(contact["vertex_contact"]) + 255,
-    )
-    found = labels(audit(dataset))
-    assert {"contact.ground_contact", "contact.vertex_contact"} <= found
-
-
-def test_contact_by_regions_of_the_users_own(dataset, sequence):
-    """Without the region file the body as a whole is held against its labels."""
-    people, camera, model = load(sequence.people), load(sequence.camera), BodyModel.embedded()
-    params = [BodyParams.from_arrays(people, "world", number) for number in range(2)]
-    cast = [LabelledPerson(number, "stroll", "neutral", each) for number, each in enumerate(params, 1)]
-    bodies = list(posed_frames(cast, model))
-    parts = parts_from_regions(
-        {"low": range(4000), "high": range(5000, model.num_vertices)}, model.num_vertices
-    )
-    made = ContactLabels(model, 2, len(bodies), float(camera["fps"]), parts=parts)
-    for frame, now in enumerate(bodies):
-        after = bodies[frame + 1] if frame + 1 < len(bodies) else None
-        made.add(frame, bodies[frame - 1] if frame else None, now, after)
-    contact = made.arrays()
-    write_arrays(sequence.contact, contact)
-    assert not audit(dataset).lines()[:-1]
-    change(sequence.contact, ground_distance=contact["ground_distance"] + np.float32(0.01))
-    assert labels(audit(dataset)) == {"contact.ground_distance"}
-    part = contact["person_contact_part"].copy()
-    part[0, 1, 3, 2] = 1 if part[0, 1, 3, 2] < 0 else -1
-    write_arrays(sequence.contact, contact | {"person_contact_part": part})
-    assert labels(audit(dataset)) == {"contact.person_contact_part"}
-
-
-def test_self_contact_that_does_not_follow(dataset, sequence):
-    people, model = load(sequence.people), BodyModel.embedded()
-    frames = len(people["valid"][0])
-    made = ContactLabels(model, 2, frames, 30.0, self_contact=True)
-    cast = [
-        LabelledPerson(number + 1, "stroll", "neutral", BodyParams.from_arrays(people, "world", number))
-        for number in range(2)
-    ]
-    for frame, now in enumerate(posed_frames(cast, model)):
-        made.add(frame, None, now, None)
-    own = {name: made.arrays()[name] for name in ("self_contact", "self_apart")}
-    change(sequence.contact, **own)
-    assert not audit(dataset).lines()[:-1]
-    own["self_contact"][1, 3, 0, 11] ^= True
-    change(sequence.contact, **own)
-    assert labels(audit(dataset)) == {"contact.self_contact"}
-    change(sequence.contact, self_contact=own["self_contact"][..., :3])
-    assert labels(audit(dataset)) == {"contact.self_contact"}
 
 
 def test_spoiled_boxes_and_visibility(dataset, sequence):

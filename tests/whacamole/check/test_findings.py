@@ -21,7 +21,11 @@ def test_one_line_a_finding():
         "dataset: dataset.json: gone: absent, limit present"
     )
     findings = Findings((finding,), 1, 20)
-    assert findings.lines()[-1] == "1 sequences, 20 frames: 1 findings"
+    assert findings.lines()[-1] == "1 sequence, 20 frames: 1 finding"
+    noted = Findings((), 2, 1, ("a region file is missing",))
+    assert noted.lines() == ["note: a region file is missing", "2 sequences, 1 frame: nothing wrong"]
+    assert noted.ok
+    assert noted.to_json()["notes"] == ["a region file is missing"]
     assert json.loads(json.dumps(findings.to_json()))["findings"][0]["frame"] == 12
     assert not findings.ok
 
