@@ -7,7 +7,7 @@ from whacamole.labels.overlay import OverlayStyle, overlay_frame
 from whacamole.labels.parts import PART_NAMES, BodyParts, parts_from_regions, skinning_parts
 from whacamole.labels.people import FrameImages, LabelledPerson, PeopleLabels
 from whacamole.labels.preview import preview_strip
-from whacamole.labels.raster import Raster, RasterMesh, rasterize, silhouette
+from whacamole.labels.raster import Raster, RasterMesh, rasterize
 from whacamole.labels.regions import read_regions
 from whacamole.labels.sequence import SequenceLabels, label_sequence
 
@@ -31,6 +31,5 @@ __all__ = [
     "preview_strip",
     "rasterize",
     "read_regions",
-    "silhouette",
     "skinning_parts",
 ]

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from whacamole.labels.arrays import Bools, Float64s, Floats, Indices, Integers, ranges
+from whacamole.labels.arrays import Float64s, Floats, Indices, Integers, ranges
 from whacamole.labels.clipping import ScreenTriangles, screen_triangles
 from whacamole.labels.cutout import Cutout, ProjectedCutout
 
@@ -104,27 +104,6 @@ def outermost(mesh: RasterMesh) -> Floats:
     corners = mesh.vertices[mesh.faces[triangle]]
     points: Float64s = (corners * weights[..., None]).sum(axis=1)
     return points
-
-
-def silhouette(
-    meshes: Sequence[RasterMesh], K: Float64s, width: int, height: int, *, near: float = NEAR
-) -> Bools:
-    """``(H, W)`` pixels covered by any of the meshes: :func:`rasterize` without depth, in less time.
-
-    Surfaces count whole here, with what the alpha of their texture cuts away.
-    """
-    # Spans are marked by +1 at the first pixel and -1 after the last; a running sum fills them.
-    edges = np.zeros(height * (width + 1), dtype=np.int64)
-    for mesh in meshes:
-        triangles = screen_triangles(
-            mesh.vertices, mesh.faces, K, (width, height), near=near, cull_back=mesh.cull_back
-        )
-        _, line, first, end = _spans(triangles, width, height)
-        start = line * (width + 1)
-        edges += np.bincount(start + first, minlength=len(edges))
-        edges -= np.bincount(start + end, minlength=len(edges))
-    covered: Bools = np.cumsum(edges.reshape(height, width + 1), axis=1)[:, :width] > 0
-    return covered
 
 
 def _spans(triangles: ScreenTriangles, width: int, height: int) -> tuple[Indices, Indices, Indices, Indices]:

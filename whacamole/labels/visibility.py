@@ -4,8 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
-from whacamole.labels.arrays import Bools, Float64s, Floats, transformed
+from whacamole.labels.arrays import Bools, Float64s, Floats, dots
 from whacamole.labels.clipping import project_points
 from whacamole.labels.raster import NEAR
 
@@ -28,12 +29,13 @@ def flesh_thickness(rest_vertices: Floats, rest_joints: Floats) -> Float64s:
         rest_vertices: ``(V, 3)``.
         rest_joints: ``(J, 3)``.
     """
-    directions = _spread_directions(_DIRECTIONS)
+    directions = cKDTree(_spread_directions(_DIRECTIONS))
     thickness = np.empty(len(rest_joints))
     for number, joint in enumerate(np.asarray(rest_joints, dtype=np.float64)):
         offset = rest_vertices - joint
+        length = np.sqrt(dots(offset, offset))
         nearest = np.full(_DIRECTIONS, np.inf)
-        np.minimum.at(nearest, transformed(offset, directions).argmax(axis=1), np.linalg.norm(offset, axis=1))
+        np.minimum.at(nearest, directions.query(offset / np.maximum(length, 1e-9)[:, None])[1], length)
         thickness[number] = np.median(nearest[np.isfinite(nearest)])
     return _THICKNESS_FACTOR * thickness + _CLOTHING
 
