@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from whacamole.stage.indoors import living_room, sports_hall, warehouse
-from whacamole.stage.light import Hdri, lit_by
+from whacamole.stage.light import DAY, Hdri, lit_by
 from whacamole.stage.outdoors import courtyard, market, night_street, park, plaza, rooftop
 from whacamole.stage.own import OwnStage
 from whacamole.stage.places import Places, find_places
@@ -15,6 +15,7 @@ from whacamole.stage.stage import SetBuilder, Stage
 from whacamole.stage.survey import Ground
 
 __all__ = [
+    "DAY",
     "STAGES",
     "Ground",
     "Hdri",

@@ -16,6 +16,7 @@ from whacamole.stage import Places, Stage
 from whacamole.take.casting import Role, cast_role
 from whacamole.take.crowd import Footprint, Placement, place_crowd
 from whacamole.take.location import choose_location
+from whacamole.take.metering import metered
 from whacamole.take.placing import body_params, choose_window, ground_shift, path_scale, scene_transform
 
 __all__ = ["Performer", "Take", "stage_take"]
@@ -165,7 +166,11 @@ def stage_take(
         for number, (motion_id, role, params, posed) in enumerate(people, start=1)
     )
     paths = np.concatenate([person.posed.joints[:, 0, :2] for person in performers])
-    return Take(motion, scene.first, performers, location.build(paths, textures))
+    stage = location.build(paths, textures)
+    if location.ground is None:
+        tones = [person.role.member.tone for person in performers]
+        stage = metered(stage, [person.posed.joints for person in performers], tones)
+    return Take(motion, scene.first, performers, stage)
 
 
 Person = tuple[Role, BodyParams, Posed]
