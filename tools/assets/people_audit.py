@@ -99,14 +99,18 @@ class Cover:
     """Which points a cloth covers at rest, and by which of its patches; then how far they come out of those.
 
     Only the patch that covers a point at rest counts: at a hip that bends a shirt folds into the crease and
-    the trousers of the thigh come to lie over it, as they should.
+    the trousers of the thigh come to lie over it, as they should. Of a patch only the sheet nearest at rest counts:
+    a collar is folded, and its other sheet faces the other way.
     """
 
     def __init__(self, points: Floats, cloth: Floats, faces: NDArray[np.int32]) -> None:
         self._corners, self._weights = cloth_points(faces)
         self._patch = np.zeros((len(points), PATCH), np.intp)
-        at, _ = self._surface(cloth)
+        at, normal = self._surface(cloth)
         _, self._patch = cKDTree(at).query(points, k=PATCH)
+        first = self._patch[:, :1]
+        same_sheet = np.einsum("nkc,nkc->nk", normal[self._patch], normal[first]) > 0
+        self._patch = np.where(same_sheet, self._patch, first)
         depth, distance = self._outside(points, cloth)
         self.covered = (depth < 0.0) & (distance < NEAR_M) & (-depth > STRAIGHT * distance)
 

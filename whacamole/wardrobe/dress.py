@@ -14,7 +14,7 @@ from whacamole.body import BodyModel, BodyParams, vertex_normals
 from whacamole.wardrobe.cast import CastMember
 from whacamole.wardrobe.catalogue import Catalogue, Item, catalogue
 from whacamole.wardrobe.layer import item_layer, join
-from whacamole.wardrobe.layering import tuck_all
+from whacamole.wardrobe.layering import wear_all
 from whacamole.wardrobe.shells import dress_in_shells, dress_in_texture
 from whacamole.wardrobe.textures import TextureFolder, eye_texture, item_texture, skin_texture
 
@@ -184,14 +184,12 @@ def _item_meshes(
     folder: TextureFolder,
 ) -> Iterator[Mesh]:
     layers = [item_layer(wardrobe, item.name) for item in items]
-    tucked = tuck_all(wardrobe, tuple(items))
-    posed = join(layers).pose(body, params, push=np.concatenate([under.push for under in tucked]))
-    start = 0
-    for worn, item, layer, under in zip(member.worn, items, layers, tucked, strict=True):
-        vertices = posed[:, start : start + layer.num_vertices]
-        start += layer.num_vertices
+    ends = np.cumsum([layer.num_vertices for layer in layers])[:-1]
+    posed = np.split(join(layers).pose(body, params), ends, axis=1)
+    covered = wear_all(wardrobe, items, [layer.rest(params.betas) for layer in layers], posed)
+    for worn, item, vertices, unseen in zip(member.worn, items, posed, covered, strict=True):
         geometry = wardrobe.geometry(item.name)
-        seen = ~under.hidden[geometry.faces].all(axis=1)
+        seen = ~unseen[geometry.faces].all(axis=1)
         material = Material(
             base_color_texture=item_texture(wardrobe, item, worn, member.hair_colour, folder),
             alpha_mode="clip" if item.see_through else "opaque",

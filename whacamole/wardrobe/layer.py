@@ -52,13 +52,12 @@ class Layer:
         moved: Float32Array = self.template.reshape(-1) + self.shape_dirs @ betas.astype(np.float32)
         return moved.reshape(-1, 3)
 
-    def pose(self, body: BodyModel, params: BodyParams, push: Float32Array | None = None) -> Float32Array:
+    def pose(self, body: BodyModel, params: BodyParams) -> Float32Array:
         """Vertices (T, N, 3) float32 in the frame of the parameters [m].
 
         Args:
             body: whose joints the layer moves with.
             params: T frames with one shape.
-            push: (N, 3) [m] added at rest.
 
         Raises:
             ValueError: the parameters hold a shape a frame.
@@ -67,7 +66,7 @@ class Layer:
             raise ValueError(
                 f"betas: shape {params.betas.shape}; clothes need one shape (10,) for all frames"
             )
-        shaped = self.rest(params.betas) if push is None else self.rest(params.betas) + push
+        shaped = self.rest(params.betas)
         rest = np.broadcast_to(
             body.rest_joints(params.betas, params.expression), (params.num_frames, NUM_JOINTS, 3)
         )
