@@ -1,7 +1,8 @@
-"""Measures the people: ``python tools/assets/people_audit.py [--people 40]``.
+"""Measures the people: ``python tools/assets/people_audit.py [--people 40] [--around 8]``.
 
 In every pose of ``hard_poses.py``: the volume of the skin against that at rest, and how much of what cloth
-covers at rest comes out of it: skin out of clothes, clothes out of the clothes over them.
+covers at rest comes out of it: skin out of clothes, clothes out of the clothes over them. With ``--around``
+the first few people are also looked at from all sides for gaps (``seen.py``; half a minute each).
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ import argparse
 import json
 import sys
 import tempfile
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -23,7 +25,9 @@ sys.path.insert(0, str(Path(__file__).parents[2]))
 sys.path.insert(0, str(Path(__file__).parent))
 
 from hard_poses import HARD_POSES, hard_pose
+from seen import inside_seen
 
+from render_jobs.scene import Mesh
 from whacamole.body import BodyModel, BodyParams, mesh_volume
 from whacamole.wardrobe import CastMember, cast, dress
 from whacamole.wardrobe.catalogue import catalogue
@@ -99,8 +103,8 @@ class Cover:
     """Which points a cloth covers at rest, and by which of its patches; then how far they come out of those.
 
     Only the patch that covers a point at rest counts: at a hip that bends a shirt folds into the crease and
-    the trousers of the thigh come to lie over it, as they should. Of a patch only the sheet nearest at rest counts:
-    a collar is folded, and its other sheet faces the other way.
+    the trousers of the thigh come to lie over it, as they should. Of a patch only the sheet nearest at rest
+    counts: a collar is folded, and its other sheet faces the other way.
     """
 
     def __init__(self, points: Floats, cloth: Floats, faces: NDArray[np.int32]) -> None:
@@ -136,17 +140,20 @@ class Cover:
         return depth, distance[rows, nearest]
 
 
+def dressed(member: CastMember, body: BodyModel, textures: str) -> dict[str, Mesh]:
+    """A member's meshes by item; frame 0 is at rest, then come the hard poses."""
+    params = params_of(member, [np.zeros((21, 3)), *map(hard_pose, HARD_POSES)])
+    meshes = dress(member, body, params, textures=Path(textures))
+    return {mesh.name.removeprefix("person-"): mesh for mesh in meshes}
+
+
 def audit(count: int) -> Iterator[tuple[str, str, Floats, str]]:
     """For every person, pose and pair of layers: pair, pose, how far covered points are outside [m], what."""
-    body, names = BodyModel.embedded(), list(HARD_POSES)
+    body = BodyModel.embedded()
     with tempfile.TemporaryDirectory() as textures:
         for seed in range(count):
             member = cast(seed)
-            params = params_of(member, [np.zeros((21, 3)), *map(hard_pose, names)])
-            meshes = {
-                mesh.name.removeprefix("person-"): mesh
-                for mesh in dress(member, body, params, textures=Path(textures))
-            }
+            meshes = dressed(member, body, textures)
             slots = {catalogue().items[worn.item].slot: worn.item for worn in member.worn}
             for slot in ("bottom", "shoes", "top"):
                 outer = slots[slot]
@@ -156,9 +163,24 @@ def audit(count: int) -> Iterator[tuple[str, str, Floats, str]]:
                     cloth, skin = (np.asarray(m.vertices, np.float64) for m in (over, under))
                     cover = Cover(skin[0], cloth[0], over.faces)
                     pair = "skin" if inner == "skin" else "cloth"
-                    for frame, pose in enumerate(names, start=1):
+                    for frame, pose in enumerate(HARD_POSES, start=1):
                         out = cover.outside(skin[frame], cloth[frame])
                         yield pair, pose, out, f"{seed} {inner} through {outer}"
+
+
+def insides(count: int) -> dict[str, object]:
+    """By pose: of the pixels that show a person from all sides, those with the inside of a surface [%]."""
+    body = BodyModel.embedded()
+    shown, inside = Counter[str](), Counter[str]()
+    with tempfile.TemporaryDirectory() as textures:
+        for seed in range(count):
+            meshes = dressed(cast(seed), body, textures)
+            solid = {name: mesh for name, mesh in meshes.items() if mesh.material.alpha_mode == "opaque"}
+            for frame, pose in enumerate(("rest", *HARD_POSES)):
+                for pixels, backs in inside_seen(solid, frame):
+                    shown[pose] += pixels
+                    inside[pose] += sum(backs.values())
+    return {pose: round(100 * inside[pose] / shown[pose], 3) for pose in shown}
 
 
 def main() -> int:
@@ -167,6 +189,7 @@ def main() -> int:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--people", type=int, default=40)
+    parser.add_argument("--around", type=int, default=0, help="people to look at from all sides")
     parser.add_argument(
         "--body", type=Path, help="measure the volume of this body instead of the shipped one"
     )
@@ -187,6 +210,8 @@ def main() -> int:
             for pair, by_pose in counts.items()
         },
     }
+    if arguments.around:
+        report["insides_seen_percent"] = insides(arguments.around)
     print(json.dumps(report, indent=1))
     return 0
 

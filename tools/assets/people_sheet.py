@@ -31,8 +31,8 @@ from whacamole.body import JOINT_INDEX, BodyModel, BodyParams, facing
 from whacamole.motion import Motion, embedded_motions, find_motions, read_motion
 from whacamole.wardrobe import CastMember, cast, dress
 
-CELL_M: Final = {"body": (1.15, 2.0), "face": (0.42, 0.46)}
-"""Width and height of a person's place."""
+CELL_M: Final = {"body": (1.15, 2.0), "hard": (1.15, 2.4), "face": (0.42, 0.46)}
+"""Width and height of a person's place; in hard poses arms are raised."""
 
 DISTANCE_M: Final = 40.0
 """The camera stands far off, so that all are seen from the same side."""
@@ -126,7 +126,7 @@ def sheet_job(arguments: argparse.Namespace, textures: Path) -> RenderJob:
     rng = np.random.default_rng(arguments.seed)
     poses = hard_moments() if arguments.hard else moments(rng, 1.0 if arguments.faces else STANDING_SHARE)
     rows = -(-arguments.count // arguments.columns)
-    look = "face" if arguments.faces else "body"
+    look = "face" if arguments.faces else "hard" if arguments.hard else "body"
     width, height = CELL_M[look]
     meshes: list[Mesh] = []
     for k in range(arguments.count):

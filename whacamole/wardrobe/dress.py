@@ -10,12 +10,13 @@ import numpy as np
 import numpy.typing as npt
 
 from render_jobs.scene import Material, Mesh
-from whacamole.body import BodyModel, BodyParams, vertex_normals
+from whacamole.body import BodyModel, BodyParams
 from whacamole.wardrobe.cast import CastMember
-from whacamole.wardrobe.catalogue import Catalogue, Item, catalogue
+from whacamole.wardrobe.catalogue import Catalogue, catalogue
 from whacamole.wardrobe.layer import item_layer, join
 from whacamole.wardrobe.layering import wear_all
 from whacamole.wardrobe.shells import dress_in_shells, dress_in_texture
+from whacamole.wardrobe.skin import beside, drawn_in, keep_below
 from whacamole.wardrobe.textures import TextureFolder, eye_texture, item_texture, skin_texture
 
 Float32Array = npt.NDArray[np.float32]
@@ -24,9 +25,6 @@ BoolArray = npt.NDArray[np.bool_]
 
 SKIN_PART, EYE_PARTS, TEETH_PARTS, TONGUE_PART = 0, (1, 2), (3, 4), 5
 """Values of the body file's ``vertex_part``."""
-
-DRAWN_IN: Final = np.float32(0.006)
-"""How far skin that must be kept under the edge of a garment is lowered [m]."""
 
 ROUGHNESS: Final = {"leather": 0.5, "hair": 0.45, "cloth": 0.85, "pattern": 0.85, "denim": 0.9, "keep": 0.75}
 
@@ -108,12 +106,18 @@ def dress(
     items = [wardrobe.items[worn.item] for worn in member.worn]
     geometries = [wardrobe.geometry(item.name) for item in items]
     hidden = np.any([geometry.hidden for geometry in geometries], axis=0)
-    under = np.any([geometry.under for geometry in geometries], axis=0) & ~hidden
+    under = np.any([geometry.under for geometry in geometries], axis=0) & beside(body, ~hidden)
+    layers = [item_layer(wardrobe, item.name) for item in items]
+    ends = np.cumsum([layer.num_vertices for layer in layers])[:-1]
+    clothes = np.split(join(layers).pose(body, params), ends, axis=1)
+    unseen = wear_all(wardrobe, items, [layer.rest(params.betas) for layer in layers], clothes)
+    lowered = drawn_in(body, posed, under)
+    keep_below(wardrobe, body, items, clothes, lowered, under)
     skin = skin_texture(wardrobe, member, folder)
     eyes = eye_texture(member.eye_colour, folder)
     return [
-        *_body_meshes(look, body, _drawn_in(body, posed, under), hidden, skin, eyes),
-        *_item_meshes(look, wardrobe, member, items, body, params, folder),
+        *_body_meshes(look, body, lowered, hidden, skin, eyes),
+        *_item_meshes(look, wardrobe, member, clothes, unseen, folder),
     ]
 
 
@@ -142,21 +146,6 @@ def _body_meshes(
     )
 
 
-def _drawn_in(body: BodyModel, posed: Float32Array, under: BoolArray) -> Float32Array:
-    """The body with the skin at the edges of clothes lowered, so that it stays below the cloth in all poses.
-
-    Only what cloth covers moves: bare skin is that of the labels.
-    """
-    faces = body.faces[under[body.faces].any(axis=1)]
-    used = np.unique(faces)
-    number = np.zeros(body.num_vertices, dtype=np.int32)
-    number[used] = np.arange(len(used))
-    normals = vertex_normals(posed[:, used], number[faces])
-    lowered = posed.copy()
-    lowered[:, under] -= DRAWN_IN * normals[:, number[under]]
-    return lowered
-
-
 def _cut(vertices: Float32Array, faces: Int32Array) -> tuple[Float32Array, Int32Array]:
     """The vertices (T, n, 3) that some faces use, and the faces in their numbers."""
     used = np.unique(faces[faces >= 0])
@@ -178,18 +167,13 @@ def _item_meshes(
     look: _Look,
     wardrobe: Catalogue,
     member: CastMember,
-    items: list[Item],
-    body: BodyModel,
-    params: BodyParams,
+    clothes: list[Float32Array],
+    unseen: tuple[BoolArray, ...],
     folder: TextureFolder,
 ) -> Iterator[Mesh]:
-    layers = [item_layer(wardrobe, item.name) for item in items]
-    ends = np.cumsum([layer.num_vertices for layer in layers])[:-1]
-    posed = np.split(join(layers).pose(body, params), ends, axis=1)
-    covered = wear_all(wardrobe, items, [layer.rest(params.betas) for layer in layers], posed)
-    for worn, item, vertices, unseen in zip(member.worn, items, posed, covered, strict=True):
-        geometry = wardrobe.geometry(item.name)
-        seen = ~unseen[geometry.faces].all(axis=1)
+    for worn, vertices, left_out in zip(member.worn, clothes, unseen, strict=True):
+        item, geometry = wardrobe.items[worn.item], wardrobe.geometry(worn.item)
+        seen = ~left_out[geometry.faces].all(axis=1)
         material = Material(
             base_color_texture=item_texture(wardrobe, item, worn, member.hair_colour, folder),
             alpha_mode="clip" if item.see_through else "opaque",

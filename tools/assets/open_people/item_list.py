@@ -79,7 +79,7 @@ ITEMS: Final = (
     _clothes("jeans_worn", "bottom", "male_casualsuit01", part="lower", wearer="male", colouring="denim"),
     _clothes("jeans", "bottom", "male_casualsuit04", part="lower", colouring="denim"),
     _clothes(
-        "shorts", "bottom", "male_casualsuit04", part="lower", wearer="male", colouring="denim", cut_at=0.47
+        "shorts", "bottom", "male_casualsuit04", part="lower", wearer="male", colouring="denim", cut_at=0.54
     ),
     _clothes("suit_trousers", "bottom", "male_elegantsuit01", part="lower", wearer="male", colouring="keep"),
     _clothes("shoes_brown", "shoes", "shoes01", colouring="leather"),
