@@ -41,6 +41,10 @@ class Floor:
         """Farthest that a path gets from the origin along an axis [m]."""
         return float(max(np.abs(self.low).max(), np.abs(self.high).max()))
 
+    def reserve(self, place: NDArray[np.float64], radius: float) -> None:
+        """Keep a disc [m] free of everything that is yet to stand."""
+        self._taken.append((place, radius))
+
     def spot(
         self, rng: np.random.Generator, footprint: float, beyond: float, clearance: float = CLEARANCE
     ) -> tuple[float, float] | None:

@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from render_jobs import Environment, Lamp, Material
-from whacamole.stage.floor import Floor
+from whacamole.stage.floor import CLEARANCE, Floor
+from whacamole.stage.garden import lay_out_garden
 from whacamole.stage.props import furnish, plant_trees, prop_materials
 from whacamole.stage.stage import SetBuilder, Stage
 from whacamole.stage.surroundings import daylight, ground, house_fronts
@@ -30,18 +31,13 @@ def plaza(rng: np.random.Generator, paths: Paths, folder: Path | None) -> Stage:
 
 
 def park(rng: np.random.Generator, paths: Paths, folder: Path | None) -> Stage:
-    """A meadow with trees, benches and a few walls."""
+    """A meadow with trees near and far, a gravel path, hedges, flower beds, benches and fences."""
     build, floor = SetBuilder(folder), Floor(paths)
     ground(build, floor, "grass", float(rng.uniform(3.0, 4.5)), rng)
-    furnish(
-        build,
-        floor,
-        ("bench", "planter", "wall"),
-        int(rng.integers(4, 8)),
-        _masonry(build, rng),
-        rng,
-    )
-    plant_trees(build, floor, int(rng.integers(8, 14)), rng, beyond=14.0)
+    lay_out_garden(build, floor, rng)
+    furnish(build, floor, ("planter", "wall"), int(rng.integers(2, 5)), _masonry(build, rng), rng)
+    rings = ((int(rng.integers(6, 10)), CLEARANCE + 1.0, 14.0), (int(rng.integers(10, 16)), 14.0, 30.0))
+    plant_trees(build, floor, rings, rng)
     sun, sky = daylight(rng, (25.0, 65.0))
     return build.stage("park", (sun,), sky, exposure=0.7)
 

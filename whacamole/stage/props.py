@@ -82,18 +82,20 @@ def furnish(
 def plant_trees(
     build: SetBuilder,
     floor: Floor,
-    count: int,
+    rings: Sequence[tuple[int, float, float]],
     rng: np.random.Generator,
-    *,
-    beyond: float,
-    clearance: float = CLEARANCE + 1.0,
 ) -> None:
-    """Plant ``count`` trees: a trunk that blocks the way, a crown above the heads that does not."""
+    """Plant trees: a trunk that blocks the way, a crown above the heads that does not.
+
+    Args:
+        rings: how many, from how near the paths, to how far outside their rectangle [m].
+    """
     bark = build.material("bark", TEXTURES["wood"], rng, metres=0.9)
     leaves = build.material("leaves", TEXTURES["leaves"], rng, metres=1.4, roughness=0.9)
-    for index in range(count):
+    spans = [(nearest, beyond) for count, nearest, beyond in rings for _ in range(count)]
+    for index, (nearest, beyond) in enumerate(spans):
         radius, trunk = float(rng.uniform(0.12, 0.28)), float(rng.uniform(2.2, 3.4))
-        place = floor.spot(rng, radius + 0.6, beyond, clearance)
+        place = floor.spot(rng, radius + 0.6, beyond, nearest)
         if place is None:
             continue
         build.add_cylinder(f"trunk-{index}", (*place, 0.0), radius, trunk + 0.6, bark)
@@ -106,7 +108,7 @@ def _crown(base: Size, radius: float, rng: np.random.Generator) -> Solid:
     ball = trimesh.creation.icosphere(subdivisions=3)
     vertices, faces, uv = [], [], []
     for index in range(int(rng.integers(3, 6))):
-        lumps = 1.0 + 0.12 * _waves(ball.vertices, rng)
+        lumps = 1.0 + 0.11 * _waves(ball.vertices, 5.0, rng) + 0.05 * _waves(ball.vertices, 12.0, rng)
         size = radius * rng.uniform(0.55, 0.85)
         offset = rng.uniform(-0.55, 0.55, 3) * radius * [1.0, 1.0, 0.5]
         center = np.asarray(base) + np.array([0.0, 0.0, radius]) + offset
@@ -121,9 +123,11 @@ def _crown(base: Size, radius: float, rng: np.random.Generator) -> Solid:
     )
 
 
-def _waves(directions: NDArray[np.float64], rng: np.random.Generator) -> NDArray[np.float64]:
+def _waves(
+    directions: NDArray[np.float64], frequency: float, rng: np.random.Generator
+) -> NDArray[np.float64]:
     """Return a smooth random function of unit vectors (N, 3), about −1 … 1."""
     total = np.zeros(len(directions))
     for _ in range(6):
-        total += np.sin(directions @ rng.normal(0.0, 5.0, 3) + rng.uniform(0.0, 2.0 * np.pi))
+        total += np.sin(directions @ rng.normal(0.0, frequency, 3) + rng.uniform(0.0, 2.0 * np.pi))
     return total / 3.0

@@ -1,11 +1,12 @@
 """The few solids that stages are built of, with UVs in metres so that textures keep their scale."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Solid", "Vector", "box", "cylinder", "ground_grid"]
+__all__ = ["Solid", "Vector", "box", "cylinder", "ground_grid", "joined", "strip", "turned"]
 
 
 Vector = tuple[float, float, float]
@@ -24,6 +25,34 @@ class Solid:
     vertices: NDArray[np.float32]
     faces: NDArray[np.int32]
     uv: NDArray[np.float32]
+
+
+def turned(solid: Solid, place: Vector, yaw: float) -> Solid:
+    """Return a solid that was built about the origin, turned about z by ``yaw`` [rad] and put at a place."""
+    vertices = solid.vertices @ _rotation(yaw).T + np.asarray(place)
+    return replace(solid, vertices=vertices.astype(np.float32))
+
+
+def joined(solids: Sequence[Solid]) -> Solid:
+    """Return solids with faces of one kind as one."""
+    first = np.cumsum([0, *(len(solid.vertices) for solid in solids[:-1])])
+    faces = [solid.faces + start for solid, start in zip(solids, first, strict=True)]
+    return Solid(
+        np.concatenate([solid.vertices for solid in solids]),
+        np.concatenate(faces).astype(np.int32),
+        np.concatenate([solid.uv for solid in solids]),
+    )
+
+
+def strip(
+    middle: NDArray[np.float64], along: NDArray[np.float64], length: float, width: float, z: float
+) -> Solid:
+    """Return a level rectangle about ``middle`` (2,), its length [m] along the unit vector ``along`` (2,)."""
+    across = np.array([-along[1], along[0]])
+    uv = np.array([(0.0, 0.0), (length, 0.0), (length, width), (0.0, width)])
+    corners = middle + (uv - [length / 2.0, width / 2.0]) @ np.stack([along, across])
+    vertices = np.column_stack([corners, np.full(4, z)])
+    return Solid(vertices.astype(np.float32), np.array([[0, 1, 2, 3]], np.int32), uv[None].astype(np.float32))
 
 
 def _rotation(yaw: float) -> NDArray[np.float64]:

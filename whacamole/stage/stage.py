@@ -10,7 +10,7 @@ from PIL import Image
 
 from camera_rigs import Obstacle, World
 from render_jobs import Environment, Lamp, Material, Mesh, Sun
-from whacamole.stage.shapes import Solid, Vector, box, cylinder
+from whacamole.stage.shapes import Solid, Vector, box, cylinder, turned
 
 __all__ = ["SetBuilder", "Stage"]
 
@@ -90,6 +90,12 @@ class SetBuilder:
     def add_box(self, name: str, base: Vector, size: Vector, material: Material, yaw: float = 0.0) -> None:
         """Put a box on the set; ``base`` is the middle of its underside, ``yaw`` turns it about z [rad]."""
         self.add(name, box(base, size, yaw), material, _around(name, base, size, yaw))
+
+    def add_solid(
+        self, name: str, solid: Solid, base: Vector, size: Vector, material: Material, yaw: float
+    ) -> None:
+        """Put a solid that fills a box of ``size`` about the middle of its underside on the set."""
+        self.add(name, turned(solid, base, yaw), material, _around(name, base, size, yaw))
 
     def add_cylinder(self, name: str, base: Vector, radius: float, height: float, material: Material) -> None:
         """Put an upright cylinder on the set; ``base`` is the middle of its underside."""

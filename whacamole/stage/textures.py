@@ -4,7 +4,7 @@ Every texture is a square ``(N, N, 3)`` array of sRGB in [0, 1] that repeats wit
 detail at many scales, because visual odometry and the eye both need something to hold on to.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -106,28 +106,74 @@ def asphalt(rng: np.random.Generator, size: int = 512) -> Image:
 
 
 def grass(rng: np.random.Generator, size: int = 512) -> Image:
-    """Short grass in tufts, with dry patches and fallen leaves."""
-    blades, tufts, patches = noise(rng, size, 0.5, 30.0), noise(rng, size, 1.0, 12.0), noise(rng, size, 2.0)
-    green, dry = np.array([0.22, 0.31, 0.12]), np.array([0.42, 0.40, 0.22])
-    mix = np.clip(0.35 + 0.25 * patches, 0.0, 1.0)[..., None]
-    shade = 1.0 + 0.20 * blades + 0.18 * np.clip(tufts, -1.5, 1.5)
+    """Short grass in tufts, with dry and bare patches, daisies and fallen leaves."""
+    blades, tufts, patches = noise(rng, size, 0.5, 30.0), noise(rng, size, 0.9, 12.0), noise(rng, size, 1.8)
+    green, dry, earth = (np.array(c) for c in ([0.22, 0.31, 0.12], [0.46, 0.43, 0.24], [0.30, 0.23, 0.16]))
+    mix = np.clip(0.35 + 0.28 * patches, 0.0, 1.0)[..., None]
+    shade = 1.0 + 0.22 * blades + 0.24 * np.clip(tufts, -1.5, 1.8)
     image = ((1.0 - mix) * green + mix * dry) * shade[..., None]
-    _strew_leaves(rng, image, size * size // 1800)
+    worn = np.clip(3.0 * (noise(rng, size, 1.2, 3.0) - 1.5), 0.0, 1.0)[..., None]
+    image = (1.0 - worn) * image + worn * earth * (1.0 + 0.15 * blades)[..., None]
+    _strew(rng, image, size * size // 1000, AUTUMN, (2.5, 6.5), 0.55)
+    _strew(rng, image, size * size // 1500, DAISIES, (1.6, 2.6), 1.0)
     return _clipped(image)
 
 
-def _strew_leaves(rng: np.random.Generator, image: Image, count: int) -> None:
-    """Lay ``count`` leaves, ellipses of 5 to 13 pixels in the colours of autumn, on a tileable image."""
+AUTUMN = ((0.55, 0.42, 0.18), (0.42, 0.24, 0.10), (0.62, 0.54, 0.30), (0.30, 0.22, 0.12))
+DAISIES = ((0.88, 0.87, 0.80), (0.90, 0.82, 0.30), (0.85, 0.80, 0.86))
+BLOSSOMS = (
+    (0.78, 0.16, 0.20),
+    (0.88, 0.70, 0.15),
+    (0.75, 0.72, 0.80),
+    (0.52, 0.24, 0.58),
+    (0.86, 0.45, 0.58),
+)
+
+
+def _strew(
+    rng: np.random.Generator,
+    image: Image,
+    count: int,
+    colors: tuple[tuple[float, float, float], ...],
+    half: tuple[float, float],
+    roundness: float,
+) -> None:
+    """Lay ``count`` ellipses of the colours on a tileable image: leaves, blossoms, stones.
+
+    Args:
+        half: range of their half lengths [px].
+        roundness: width over length.
+    """
     size = len(image)
-    colors = np.array([[0.55, 0.42, 0.18], [0.42, 0.24, 0.10], [0.62, 0.54, 0.30], [0.30, 0.22, 0.12]])
     y, x = np.mgrid[-7:8, -7:8].astype(np.float64)
     for _ in range(count):
-        turn, half = rng.uniform(0.0, np.pi), rng.uniform(2.5, 6.5)
+        turn, long = rng.uniform(0.0, np.pi), rng.uniform(*half)
         along, across = x * np.cos(turn) + y * np.sin(turn), y * np.cos(turn) - x * np.sin(turn)
-        rows, columns = np.nonzero((along / half) ** 2 + (across / (0.55 * half)) ** 2 < 1.0)
+        rows, columns = np.nonzero((along / long) ** 2 + (across / (roundness * long)) ** 2 < 1.0)
         row, column = rng.integers(0, size, 2)
-        color = colors[rng.integers(len(colors))] * rng.uniform(0.75, 1.25)
+        color = np.asarray(colors[rng.integers(len(colors))]) * rng.uniform(0.75, 1.25)
         image[(row + rows) % size, (column + columns) % size] = color
+
+
+def _tones(color: Image, factors: Iterable[float]) -> tuple[tuple[float, float, float], ...]:
+    """Return lighter and darker kinds of an sRGB colour (3,)."""
+    return tuple((float(f * color[0]), float(f * color[1]), float(f * color[2])) for f in factors)
+
+
+def gravel(rng: np.random.Generator, size: int = 512) -> Image:
+    """Trodden gravel: pale, with stones of many sizes and damp patches."""
+    pale = np.array([0.60, 0.55, 0.46]) * rng.uniform(0.85, 1.1)
+    image = pale * (1.0 + 0.10 * noise(rng, size, 1.8) + 0.10 * noise(rng, size, 0.3, 60.0))[..., None]
+    _strew(rng, image, size * size // 500, _tones(pale, rng.uniform(0.55, 1.35, 4)), (1.5, 5.0), 0.8)
+    return _clipped(image)
+
+
+def flowers(rng: np.random.Generator, size: int = 512) -> Image:
+    """A flower bed: blossoms of two or three colours over dark leaves."""
+    image = 0.75 * leaves(rng, size)
+    kinds = rng.choice(len(BLOSSOMS), int(rng.integers(2, 4)), replace=False)
+    _strew(rng, image, size * size // 350, tuple(BLOSSOMS[kind] for kind in kinds), (3.0, 7.0), 0.9)
+    return _clipped(image)
 
 
 def concrete(rng: np.random.Generator, size: int = 512) -> Image:
@@ -185,10 +231,15 @@ def facade(rng: np.random.Generator, size: int = 512) -> Image:
 
 
 def leaves(rng: np.random.Generator, size: int = 512) -> Image:
-    """Foliage: clumps of light and dark green."""
+    """Foliage: clumps of light and dark green, with leaves that catch the light and gaps between them."""
     clumps, fine = noise(rng, size, 1.0, 8.0), noise(rng, size, 0.3, 40.0)
     green = np.array([0.20, 0.30, 0.10]) * rng.uniform(0.8, 1.3) * [rng.uniform(0.8, 1.6), 1.0, 1.0]
-    return _clipped(green * (1.0 + 0.35 * clumps + 0.25 * fine)[..., None])
+    image = green * (1.0 + 0.35 * clumps + 0.25 * fine)[..., None]
+    tones = tuple(
+        (float(t * green[0]), float(t * green[1]), float(t * green[2])) for t in (0.25, 0.4, 1.5, 1.9)
+    )
+    _strew(rng, image, size * size // 250, tones, (3.0, 7.0), 0.6)
+    return _clipped(image)
 
 
 def _dye(rng: np.random.Generator) -> Image:
@@ -228,7 +279,9 @@ TEXTURES: dict[str, Callable[..., Image]] = {
     "cloth": cloth,
     "concrete": concrete,
     "facade": facade,
+    "flowers": flowers,
     "grass": grass,
+    "gravel": gravel,
     "leaves": leaves,
     "paving": paving,
     "plaster": plaster,
