@@ -82,7 +82,6 @@ Side = Annotated[int, Field(ge=16, le=16384)]
 Count = Annotated[int, Field(ge=1, le=32)]
 People = Annotated[tuple[Count, Count], BeforeValidator(parse_people)]
 Millimetres = Annotated[float, Field(ge=4, le=1200)]
-FocalRange = tuple[Millimetres, Millimetres]
 Shutter = Annotated[float, Field(ge=0, le=1)]
 Stops = Annotated[float, Field(ge=-10, le=10)]
 FNumber = Annotated[float, Field(ge=0.5, le=128)]
@@ -91,6 +90,9 @@ Shutters = Annotated[tuple[Shutter, Shutter], BeforeValidator(parse_span), After
 StopsSpan = Annotated[tuple[Stops, Stops], BeforeValidator(parse_span), AfterValidator(_in_order)]
 FNumbers = Annotated[tuple[FNumber, FNumber], BeforeValidator(parse_span), AfterValidator(_in_order)]
 LevelsSpan = Annotated[tuple[Levels, Levels], BeforeValidator(parse_span), AfterValidator(_in_order)]
+FocalRange = Annotated[
+    tuple[Millimetres, Millimetres], BeforeValidator(parse_span), AfterValidator(_in_order)
+]
 Size = Annotated[tuple[Side, Side], BeforeValidator(parse_size)]
 
 
@@ -164,15 +166,16 @@ class Recipe(BaseModel):
     test_fraction: float = Field(0.2, ge=0, le=1, description="share of the motions in the test split")
 
     @model_validator(mode="after")
-    def _focal_range_in_order(self) -> Self:
-        if self.focal_mm[0] > self.focal_mm[1]:
-            raise ValueError(f"focal_mm {self.focal_mm}: the shortest lens comes first")
-        return self
-
-    @model_validator(mode="after")
     def _people_in_order(self) -> Self:
         if self.people[0] > self.people[1]:
             raise ValueError(f"people {self.people}: the fewest come first")
+        return self
+
+    @model_validator(mode="after")
+    def _shots_are_known(self) -> Self:
+        from camera_rigs.shots.catalogue import resolve_shots  # late: it loads all planners
+
+        resolve_shots(self.shots)  # its PlanError is a ValueError
         return self
 
     @model_validator(mode="after")
@@ -192,6 +195,11 @@ class Recipe(BaseModel):
 
     @model_validator(mode="after")
     def _labels_need_their_passes(self) -> Self:
+        from render_jobs.passes import PASSES  # late, as above
+
+        unknown = [name for name in self.passes if name not in PASSES]
+        if unknown:
+            raise ValueError(f"passes: {unknown[0]!r} is none of {', '.join(PASSES)}")
         missing = [name for name in ("rgb", "mask", "depth") if name not in self.passes]
         if missing:
             raise ValueError(
@@ -216,7 +224,7 @@ def load_recipe(path: Path | None, overrides: dict[str, Any]) -> Recipe:
         try:
             loaded = yaml.safe_load(path.read_text(encoding="utf-8"))
         except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
-            reason = " ".join(str(error).split())
+            reason = (isinstance(error, OSError) and error.strerror) or " ".join(str(error).split())
             raise RecipeError(f"{path}: not a readable recipe ({reason})") from error
         if not isinstance(loaded, dict | None):
             raise RecipeError(f"{path}: a recipe is a list of `name: value` lines; see `whacamole recipe`")
@@ -237,7 +245,7 @@ def _one_line(error: ValidationError) -> str:
         reason = fault["msg"].removeprefix("Value error, ")
         shown = "" if fault["type"] in ("value_error", "extra_forbidden") else f" (got {fault['input']!r})"
         faults.append(f"{name}: {reason}{shown}" if name else f"{reason}{shown}")
-    return "; ".join(faults)
+    return "; ".join(dict.fromkeys(faults))  # both numbers of a pair may have the same fault
 
 
 def default_yaml() -> str:

@@ -47,7 +47,7 @@ def test_a_recipe_survives_its_own_json() -> None:
         ({"seed": -1}, "seed"),
         ({"colour": "red"}, "colour"),
         ({"passes": "rgb,mask"}, "depth"),
-        ({"focal_mm": (50.0, 24.0)}, "focal_mm"),
+        ({"focal_mm": (50.0, 24.0)}, "focal-mm"),
     ],
 )
 def test_a_wrong_value_is_named_on_one_line(values: dict[str, object], named: str) -> None:

@@ -2,10 +2,11 @@
 
 import sys
 from collections.abc import Callable
-from typing import Any
+from typing import Annotated, Any
 
 import typer
 
+from whacamole import __version__
 from whacamole.cli.baseline import app as baseline
 from whacamole.cli.body import body
 from whacamole.cli.check import check
@@ -30,7 +31,6 @@ COMMANDS: tuple[Callable[..., Any], ...] = (
 
 app = typer.Typer(
     name="whacamole",
-    help="Synthetic video datasets of people and cameras in one metric world.",
     no_args_is_help=True,
     add_completion=True,
     pretty_exceptions_enable=False,
@@ -39,6 +39,22 @@ app = typer.Typer(
 for command in COMMANDS:
     app.command(command.__name__)(command)
 app.add_typer(baseline, name="baseline")
+
+
+def _tell_version(asked: bool) -> None:
+    if asked:
+        typer.echo(f"whacamole {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _every_command(
+    version: Annotated[
+        bool,
+        typer.Option("--version", callback=_tell_version, is_eager=True, help="Print the version and exit."),
+    ] = False,
+) -> None:
+    """Synthetic video datasets of people and cameras in one metric world."""
 
 
 def main() -> None:
@@ -51,7 +67,7 @@ def main() -> None:
     except Exception as error:
         if not _is_ours(error):
             raise
-        typer.echo(f"error: {error}", err=True)
+        typer.echo(f"error: {_told(error)}", err=True)
         sys.exit(1)
 
 
@@ -61,4 +77,12 @@ def _is_ours(error: Exception) -> bool:
     from render_jobs import RenderJobError
     from whacamole.errors import WhacamoleError
 
+    if isinstance(error, OSError):  # of a file, a full disk or missing rights, not of a bug
+        return error.filename is not None and error.strerror is not None
     return isinstance(error, WhacamoleError | RenderJobError | PlanError)
+
+
+def _told(error: Exception) -> str:
+    if isinstance(error, OSError) and error.filename is not None:
+        return f"{error.filename}: {error.strerror}; check the path, its rights and the disk"
+    return str(error)

@@ -36,6 +36,13 @@ def plan(
     ] = None,
     size: Annotated[str | None, typer.Option(help="WIDTHxHEIGHT in pixels.", show_default="640x360")] = None,
     fps: Annotated[float | None, typer.Option(help="Frames a second.", show_default="30")] = None,
+    focal_mm: Annotated[
+        str | None, typer.Option(help="Lens in millimetres: 35, or 24,50.", show_default="24,50")
+    ] = None,
+    body_model: Annotated[
+        Path | None,
+        typer.Option(help="SMPL-X .npz of your own licence.", show_default="the embedded CC0 body"),
+    ] = None,
     seed: Annotated[int | None, typer.Option(help="The one seed of all choices.", show_default="0")] = None,
     limit: Annotated[
         int | None, typer.Option(help="Make at most so many plans.", show_default="no limit")
@@ -58,7 +65,8 @@ def plan(
     else:
         given = {
             "motions": motions, "shots": shots, "shots_per_motion": shots_per_motion, "people": people,
-            "stages": stages, "frames": frames, "size": size, "fps": fps, "seed": seed, "limit": limit,
+            "stages": stages, "frames": frames, "size": size, "fps": fps, "focal_mm": focal_mm,
+            "body_model": body_model, "seed": seed, "limit": limit,
         }  # fmt: skip
         overrides: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
         planned, refused = plan_with_progress(

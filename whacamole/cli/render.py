@@ -49,6 +49,13 @@ def render(
     ] = None,
     size: Annotated[str | None, typer.Option(help="WIDTHxHEIGHT in pixels.", show_default="640x360")] = None,
     fps: Annotated[float | None, typer.Option(help="Frames a second.", show_default="30")] = None,
+    focal_mm: Annotated[
+        str | None,
+        typer.Option(
+            help="Lens, as focal length on 36 mm film along the longer side: 35, or 24,50.",
+            show_default="24,50",
+        ),
+    ] = None,
     quality: Annotated[
         str | None, typer.Option(help="draft, standard or high.", show_default="standard")
     ] = None,
@@ -184,7 +191,8 @@ def render(
         "motions": motions, "shots": shots, "shots_per_motion": shots_per_motion, "frames": frames,
         "people": people, "stages": stages, "hdris": hdris,
         "motion_blur": motion_blur, "f_number": f_number, "exposure": exposure, "noise": noise,
-        "size": size, "fps": fps, "quality": quality, "engine": engine, "passes": passes,
+        "size": size, "fps": fps, "focal_mm": focal_mm, "quality": quality, "engine": engine,
+        "passes": passes,
         "image_format": image_format, "body_model": body_model, "textures": textures,
         "contact_regions": contact_regions, "self_contact": self_contact, "seed": seed, "limit": limit,
         "allow_breaches": allow_breaches,

@@ -106,6 +106,8 @@ def _look(path: Path) -> _Seen:
             return _Seen(path)
         reader = recognise(record)
         frames = reader.frames(record)
+        if frames == 1:
+            raise record.fail("a motion of 1 frame(s); give at least 2 frames")
         length = None if frames is None else resampled_length(frames, reader.rate(record))
     except MotionError as error:
         return _Seen(path, problem=str(error))

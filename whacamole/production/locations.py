@@ -11,7 +11,7 @@ from whacamole.production.worklist import work_of
 from whacamole.recipe import Recipe
 from whacamole.stage import STAGES, Places, find_places
 
-__all__ = ["forget_places", "places_of", "read_places"]
+__all__ = ["forget_places", "missing_places", "places_of", "read_places"]
 
 FOLDER = "stages"
 
@@ -39,6 +39,13 @@ def read_places(recipe: Recipe, layout: DatasetLayout, *, quiet: bool) -> Places
     for note in places.notes:
         console.print(note, markup=False)
     return places
+
+
+def missing_places(recipe: Recipe) -> tuple[str, ...]:
+    """Return a line for each place of a recipe that is not there; nothing is read."""
+    named = [Path(entry) for entry in recipe.stages if entry not in STAGES]
+    named += [recipe.hdris] if recipe.hdris is not None else []
+    return tuple(f"{path}: there is no such file or folder" for path in named if not path.exists())
 
 
 def forget_places(recipe: Recipe, layout: DatasetLayout) -> None:

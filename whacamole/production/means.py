@@ -32,6 +32,8 @@ class Shard:
         if not (slash and index.strip().isdigit() and count.strip().isdigit()):
             raise RecipeError(f"shard {text!r} is not PART/PARTS, such as 2/8")
         shard = cls(int(index), int(count))
+        if shard.count < 1:
+            raise RecipeError(f"shard {text!r}: there is at least one part, 1/1")
         if not 1 <= shard.index <= shard.count:
             raise RecipeError(
                 f"shard {text!r}: parts count from 1 to {shard.count}; with Slurm use --array=1-{shard.count}"
@@ -91,3 +93,12 @@ class Means:
     limits: Limits = field(default_factory=Limits)
     pause_s: float = DEFAULT_PAUSE_S
     check_disk: bool = True
+
+    def __post_init__(self) -> None:
+        """Refuse a cluster that is none."""
+        if self.cluster not in (None, "slurm") and "://" not in str(self.cluster):
+            raise RecipeError(
+                f"cluster {self.cluster!r} is neither slurm nor an address such as tcp://host:8786"
+            )
+        if self.cluster_config is not None and self.cluster != "slurm":
+            raise RecipeError(f"cluster-config {self.cluster_config}: it is for --cluster slurm alone")

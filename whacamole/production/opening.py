@@ -14,7 +14,7 @@ from whacamole.errors import DatasetError
 from whacamole.production.pulse import run_name
 from whacamole.recipe import Recipe
 
-__all__ = ["index_lock", "open_dataset_for", "settle_engine"]
+__all__ = ["check_folder", "index_lock", "open_dataset_for", "settle_engine"]
 
 MAY_DIFFER = frozenset({"motions", "shots_per_motion", "limit", "test_fraction", "allow_breaches"})
 """What may change between two runs into one dataset: it adds sequences, but alters none."""
@@ -36,6 +36,23 @@ def settle_engine(recipe: Recipe, layout: DatasetLayout, quiet: bool) -> Recipe:
     if note and not quiet:
         Console(stderr=True, soft_wrap=True).print(note, markup=False)
     return _with_engine(recipe, engine)
+
+
+def check_folder(recipe: Recipe, layout: DatasetLayout) -> None:
+    """Make sure that the dataset of ``recipe`` can begin or go on in this folder; nothing is written.
+
+    Raises:
+        DatasetError: the folder is a file, holds other things, or a dataset of another recipe.
+    """
+    there = next(path for path in (layout.root, *layout.root.parents) if path.exists())
+    if not there.is_dir():
+        raise DatasetError(f"{there}: is a file, not a folder; choose another --out")
+    _refuse_other_files(layout)
+    kept = layout.root / "recipe.json"
+    if kept.exists():
+        if recipe.engine == "auto":
+            recipe = _with_engine(recipe, str(read_json(kept)["engine"]))
+        _check_same(layout, recipe)
 
 
 def open_dataset_for(recipe: Recipe, layout: DatasetLayout, *, engine_is_ours: bool) -> Recipe:
@@ -100,4 +117,7 @@ def _check_same(layout: DatasetLayout, recipe: Recipe) -> None:
     differing = [name for name in now if name not in MAY_DIFFER and before.get(name) != now[name]]
     if differing:
         changes = ", ".join(f"{name} {before.get(name)} is now {now[name]}" for name in differing)
-        raise DatasetError(f"{layout.root}: was begun with another recipe ({changes}); choose another --out")
+        raise DatasetError(
+            f"{layout.root}: was begun with another recipe ({changes}); choose another --out, or delete "
+            "that folder to begin anew"
+        )

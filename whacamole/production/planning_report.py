@@ -3,11 +3,11 @@
 from pathlib import Path
 
 from rich.console import Console
-from rich.table import Table
 
 from whacamole.dataset import DatasetLayout
 from whacamole.production.locations import places_of
 from whacamole.production.planning import Planned, make_plans
+from whacamole.production.tables import table_console, table_of
 from whacamole.recipe import Recipe
 
 __all__ = ["plan_with_progress", "print_plans"]
@@ -35,13 +35,13 @@ def print_plans(planned: list[Planned], refused: list[str], *, quiet: bool) -> N
     """Print a table of the plans, and every error and finding on a line of its own."""
     errors = Console(stderr=True, soft_wrap=True, highlight=False)
     if not quiet:
-        table = Table("sequence", "frames", "shots", "mended", "findings")
+        table = table_of("sequence", "frames", "shots", "mended", "findings")
         for entry in planned:
             shots = ", ".join(entry.shots)
             table.add_row(
                 entry.sequence_id, str(entry.frames), shots, str(entry.mends), str(len(entry.findings))
             )
-        console = Console()
+        console = table_console()
         console.print(table)
         breaches = sum(not entry.ok for entry in planned)
         console.print(f"{len(planned)} plans, {breaches} with a breach or an error")

@@ -12,6 +12,7 @@ from rich.table import Table
 from whacamole.dataset import DatasetLayout, read_summary
 from whacamole.production.profiling import profile_as_dict, profile_table, read_profiles
 from whacamole.production.space import readable_bytes, sequence_bytes
+from whacamole.production.tables import table_console, table_of
 from whacamole.production.worklist import Worklist
 from whacamole.viewing.places import Places
 
@@ -48,7 +49,7 @@ class Production:
 
     @property
     def complete(self) -> bool:
-        """Whether every sequence is there and every file could be used."""
+        """Whether every sequence is there (of a dry run: could be made) and every file could be used."""
         nothing_refused = not self.worklist.refused and not self.problems
         return nothing_refused and (self.dry_run or not self.worklist.open)
 
@@ -56,6 +57,11 @@ class Production:
     def finished(self) -> list[str]:
         """Ids of the sequences asked for that are there, sorted."""
         return sorted(self.worklist.finished & {order.sequence_id for order in self.worklist.orders})
+
+    @property
+    def bytes_to_come(self) -> float:
+        """What the sequences that are still to be made take on the disk."""
+        return sum(sequence_bytes(order) for order in self.worklist.open)
 
     @cached_property
     def fewer_people(self) -> dict[str, int]:
@@ -84,8 +90,9 @@ class Production:
             "refused": {str(file.path): file.problem for file in self.worklist.refused},
             "refused_stages": list(self.problems),
             "fewer_people": self.fewer_people,
+            "bytes_to_come": round(self.bytes_to_come),
             "seconds": round(self.seconds, 3),
-            "complete": self.complete,
+            "complete": self.complete and not self.worklist.open,
         }
 
     def report(self, *, quiet: bool = False, as_json: bool = False, profile: bool = False) -> None:
@@ -103,11 +110,11 @@ class Production:
             return
         errors = Console(stderr=True, soft_wrap=True, highlight=False)
         if not quiet:
-            self._print_table(Console())
+            self._print_table(table_console())
             if self.fewer_people:
                 Console(soft_wrap=True, highlight=False).print(self._people_note(), markup=False)
         if profiles:
-            Console().print(profile_table(profiles))
+            table_console().print(profile_table(profiles))
         for file in self.worklist.refused:
             errors.print(f"refused: {file.problem}", markup=False)
         for problem in self.problems:
@@ -119,7 +126,7 @@ class Production:
         if self.dry_run:
             console.print(self._plan_table())
             to_make = len(self.worklist.open)
-            size = readable_bytes(sum(sequence_bytes(order) for order in self.worklist.open))
+            size = readable_bytes(self.bytes_to_come)
             kept = len(self.worklist.orders) - to_make
             console.print(f"{to_make} to make (about {size} on disk), {kept} finished")
             return
@@ -151,7 +158,7 @@ class Production:
         )
 
     def _plan_table(self) -> Table:
-        table = Table("sequence", "motion", "format", "people", "frames")
+        table = table_of("sequence", "motion", "format", "people", "frames")
         for order in self.worklist.orders:
             shown = "?" if order.motion.num_frames is None else str(order.frames)
             table.add_row(
@@ -161,7 +168,7 @@ class Production:
 
     def _made_table(self) -> Table:
         layout = DatasetLayout(self.root)
-        table = Table("sequence", "people", "frames", "shots", "split", "visible")
+        table = table_of("sequence", "people", "frames", "shots", "split", "visible")
         for order in self.worklist.orders:
             if order.sequence_id not in self.worklist.finished:
                 table.add_row(order.sequence_id, "", "", "[red]missing[/]", "", "")

@@ -20,11 +20,11 @@ from whacamole.dataset.card import write_card
 from whacamole.dataset.files import write_json
 from whacamole.dataset.splitting import refresh_splits
 from whacamole.dataset.statistics import collect
-from whacamole.errors import DatasetError, RecipeError
+from whacamole.errors import DatasetError
 from whacamole.production.attempt import DISK_FULL, AttemptError, attempt
-from whacamole.production.locations import forget_places, read_places
+from whacamole.production.locations import forget_places, missing_places, read_places
 from whacamole.production.means import Limits, Means
-from whacamole.production.opening import index_lock, open_dataset_for, settle_engine
+from whacamole.production.opening import check_folder, index_lock, open_dataset_for, settle_engine
 from whacamole.production.progress import Monitor
 from whacamole.production.pulse import RunRecord, run_name
 from whacamole.production.report import Production
@@ -56,13 +56,14 @@ def produce(
     """
     means = means or Means()
     layout = DatasetLayout(out.resolve())
+    check_folder(recipe, layout)
+    facts_of_dataset = _facts(recipe)
     worklist = _worklist(recipe, layout, means)
     if dry_run:
-        return Production(layout.root, worklist, {}, 0.0, {}, dry_run=True)
+        return Production(layout.root, worklist, {}, 0.0, {}, dry_run=True, problems=missing_places(recipe))
     if means.check_disk:
         check_disk(worklist.open, means.jobs or 1, layout.root)
     settled = settle_engine(recipe, layout, quiet)
-    facts_of_dataset = _facts(settled)
     try:
         places = read_places(settled, layout, quiet=quiet)
         settled = open_dataset_for(settled, layout, engine_is_ours=recipe.engine == "auto")
@@ -139,13 +140,9 @@ def _crew(means: Means, orders: int, layout: DatasetLayout) -> Iterator[tuple[Cr
         threads = limits.threads or config.cores
         with slurm_crew(config, layout.logs / "slurm") as crew:
             yield crew, replace(limits, threads=threads)
-    elif "://" in means.cluster:
+    else:
         with dask_crew(means.cluster) as crew:
             yield crew, limits
-    else:
-        raise RecipeError(
-            f"cluster {means.cluster!r} is neither slurm nor an address such as tcp://host:8786"
-        )
 
 
 @contextlib.contextmanager
@@ -199,6 +196,5 @@ def _facts(recipe: Recipe) -> dict[str, Any]:
         "generator": "whacamole",
         "versions": {"whacamole": __version__, **{name: version(name) for name in ("bpy", "numpy", "scipy")}},
         "seed": recipe.seed,
-        "recipe": recipe.save_as_dict(),
         "body_model": {"name": body.name, "sha256": body.sha256},
     }
