@@ -3,8 +3,10 @@
 Renders a few frames on every stage as ``whacamole render`` does, and shows them, one by one, to MediaPipe's
 pose detector (BlazePose full, the largest model in the PyPI wheel; ``pip install whacamole[video]``). Of
 the people of whom more than 0.8 can be seen it counts how many are found, and how many of their shoulders,
-hips, knees and ankles lie within 0.2 torso lengths of our labels; by stage, skin, motion. Failures are kept
-as pictures in ``OUT/failures``. Finished sequences are not rendered again.
+hips, knees and ankles lie within 0.2 torso lengths of our labels; by stage, skin, motion, framing, view,
+height of the camera, trunk. As MediaPipe does from frame to frame, a person is read again in the region that
+was read, until it settles. Failures are kept as pictures in ``OUT/failures``. Finished sequences are not
+rendered again.
 """
 
 from __future__ import annotations
@@ -20,8 +22,8 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
-from whacamole.baseline.estimators.blazepose import BlazePose, Reading
-from whacamole.body import JOINT_INDEX
+from whacamole.baseline.estimators.blazepose import BlazePose, Reading, Region
+from whacamole.body import JOINT_INDEX, facing
 from whacamole.dataset import open_dataset
 from whacamole.motion import embedded_motions
 from whacamole.production.means import Limits, Means
@@ -42,7 +44,11 @@ LANDMARKS: Final = {
 }  # fmt: skip
 SKINS: Final = ((0.33, "light"), (0.66, "medium"), (1.01, "dark"))
 
-GROUPS: Final = ("stage", "skin", "motion", "framing")
+REREADS: Final = 4
+"""A person is read again at most so often."""
+
+SETTLED: Final = 0.02
+"""A region that moves and grows by less, in its sides, has settled."""
 
 Floats = NDArray[np.float64]
 
@@ -52,15 +58,12 @@ class Shown:
     """One person in one frame.
 
     Attributes:
-        stage, skin, motion, framing: the groups this counts in.
+        groups: those this counts in, by kind.
         found: a detection is centred on the person.
         error: distances of the points in the image [torsos], infinite where none were read.
     """
 
-    stage: str
-    skin: str
-    motion: str
-    framing: str
+    groups: dict[str, str]
     found: bool
     error: tuple[float, ...]
 
@@ -91,7 +94,7 @@ def show(order: SequenceOrder, stage: str, pose: BlazePose, failures: Path) -> I
     for frame in range(len(camera["K"])):
         image = sequence.rgb(frame)
         regions = pose.find(image)
-        readings = [reading for region in regions if (reading := pose.read(image, region)) is not None]
+        readings = [reading for region in regions if (reading := read(pose, image, region)) is not None]
         for number, performer in enumerate(take.performers):
             inside = people["joint_visibility"][number, frame, joints] > 0
             if people["visible_fraction"][number, frame] <= SEEN or not inside.any():
@@ -103,13 +106,54 @@ def show(order: SequenceOrder, stage: str, pose: BlazePose, failures: Path) -> I
             found = bool(error.max() < np.inf) or any(
                 left <= region.x <= right and top <= region.y <= bottom for region in regions
             )
-            tone = performer.role.member.tone
-            skin = next(name for limit, name in SKINS if tone < limit)
             if (error > NEAR).any():
                 name = f"{stage}-{order.sequence_id}-{frame}-{'off' if found else 'missed'}.png"
                 picture(image, labels, readings, failures / name)
-            framing = "whole in the image" if inside.all() else "cut by its edge"
-            yield Shown(stage, skin, take.motion.id, framing, found, tuple(error) if found else ())
+            tone = performer.role.member.tone
+            groups = {
+                "stage": stage,
+                "skin": next(name for limit, name in SKINS if tone < limit),
+                "motion": take.motion.id,
+                "framing": framing(inside),
+                **geometry(people["joints_world"][number, frame], camera["T_world_camera"][frame, :3, 3]),
+            }
+            yield Shown(groups, found, tuple(error) if found else ())
+
+
+def read(pose: BlazePose, image: NDArray[np.uint8], region: Region) -> Reading | None:
+    """The person in a region, read until the region settles."""
+    reading = pose.read(image, region)
+    for _ in range(REREADS if reading is not None else 0):
+        assert reading is not None
+        after = reading.next
+        if after.apart(region) < SETTLED and abs(after.side / region.side - 1.0) < SETTLED:
+            break
+        again = pose.read(image, after)
+        if again is None:
+            break
+        region, reading = after, again
+    return reading
+
+
+def framing(inside: NDArray[np.bool_]) -> str:
+    """How much of a person is in the image: of shoulders, hips, knees and ankles."""
+    if inside.all():
+        return "whole in the image"
+    return "hips and more" if inside[2:4].all() else "above the hips"
+
+
+def geometry(joints: Floats, eye: Floats) -> dict[str, str]:
+    """From where a person (55, 3) is seen by a camera at ``eye`` (3,), and how they hold themselves."""
+    neck, pelvis = (joints[JOINT_INDEX[name]].astype(np.float64) for name in ("neck", "pelvis"))
+    ahead, towards = facing(joints[None])[0], eye - neck
+    aside = np.degrees(np.arccos(np.clip(ahead[:2] @ towards[:2] / np.linalg.norm(towards[:2]), -1.0, 1.0)))
+    above = np.degrees(np.arcsin(towards[2] / np.linalg.norm(towards)))
+    bent = np.degrees(np.arccos((neck - pelvis)[2] / np.linalg.norm(neck - pelvis)))
+    return {
+        "view": "front" if aside < 60.0 else "side" if aside < 120.0 else "back",
+        "camera": "high" if above > 20.0 else "low" if above < -10.0 else "eye level",
+        "trunk": "upright" if bent < 25.0 else "bent",
+    }
 
 
 def best_reading(labels: Floats, inside: NDArray[np.bool_], readings: list[Reading]) -> Floats:
@@ -146,7 +190,7 @@ def table(shown: list[Shown]) -> None:
     print("| group | people | found % | points near % | median error, torsos |\n|---|---|---|---|---|")
     groups: dict[str, list[Shown]] = defaultdict(list)
     for one in shown:
-        for name in ("all", *(f"{kind} {getattr(one, kind)}" for kind in GROUPS)):
+        for name in ("all", *(f"{kind} {value}" for kind, value in one.groups.items())):
             groups[name].append(one)
     for name, members in sorted(groups.items()):
         errors = np.array([e for one in members for e in one.error])
