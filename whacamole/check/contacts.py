@@ -14,7 +14,7 @@ def check_contacts(sequence: Sequence, again: dict[str, AnyArray], limits: Limit
     """Hold ``contact.npz`` against the same arrays made anew from the vertices."""
     stored, ids = sequence.contact, sequence.people["track_id"].tolist()
     same_parts = stored["part_names"].tolist() == again["part_names"].tolist()
-    if "self_contact" in stored and same_parts:
+    if "self_contact" in again and same_parts:
         wrong = (stored["self_contact"] != again["self_contact"]).any(axis=(-2, -1))
         for number, track in enumerate(ids):
             message = f"track {track}: own parts said to touch that do not, or the other way"

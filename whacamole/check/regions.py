@@ -53,14 +53,16 @@ class ContactParts:
         """The parts of a sequence; None if they are not known."""
         names = tuple(str(name) for name in sequence.contact["part_names"])
         named = self._named
-        for parts in (named,) if named is not None else (self._own, self._of_recipe):
+        if named is not None and named.names != names:
+            report.add(
+                "contact.part_names",
+                f"other parts than those of {self._file}",
+                _few(names),
+                _few(named.names),
+            )
+        for parts in (named, self._own, self._of_recipe):
             if parts is not None and parts.names == names:
                 return parts
-        if named is not None:
-            report.add(
-                "contact.part_names", f"other parts than those of {self._file}",
-                _few(names), _few(named.names),
-            )  # fmt: skip
         self._unknown.append(sequence.id)
         return None
 

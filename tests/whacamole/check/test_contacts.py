@@ -100,7 +100,7 @@ def test_the_region_file_of_the_recipe(dataset, by_region, own_regions, tmp_path
         check_dataset(dataset, contact_regions=other)
 
 
-def test_self_contact_that_does_not_follow(dataset, sequence):
+def test_self_contact_that_does_not_follow(dataset, sequence, own_regions):
     people, model = load(sequence.people), BodyModel.embedded()
     frames = len(people["valid"][0])
     made = ContactLabels(model, 2, frames, 30.0, self_contact=True)
@@ -113,6 +113,9 @@ def test_self_contact_that_does_not_follow(dataset, sequence):
     own = {name: made.arrays()[name] for name in ("self_contact", "self_apart")}
     change(sequence.contact, **own)
     assert not audit(dataset).lines()[:-1]
+    assert labels(check_dataset(dataset, checksums=False, contact_regions=own_regions)) == {
+        "contact.part_names"  # made without a region file
+    }
     own["self_contact"][1, 3, 0, 11] ^= True
     change(sequence.contact, **own)
     assert labels(audit(dataset)) == {"contact.self_contact"}
