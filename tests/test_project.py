@@ -132,7 +132,7 @@ def _imported(folder: Path) -> dict[str, Path]:
 def test_what_is_imported_is_required(folder: str) -> None:
     declared = {canonicalize_name(requirement.name) for requirement in _requirements()}
     beside = {path.stem for path in (ROOT / folder).rglob("*.py")}
-    tools = {"open_people", "hard_poses", "people_audit"}  # of tools/assets
+    tools = {"open_people", "hard_poses", "people_audit", "seen"}  # of tools/assets
     ours = {*PACKAGES, "tests", "tools", "benchmarks", *tools, *beside}
     inside_blender = {"bmesh", "gpu", "mathutils"}
     distributions = importlib.metadata.packages_distributions()
