@@ -6,7 +6,7 @@ import os
 import shutil
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,8 +17,9 @@ from render_jobs.images import PARTIAL_FOLDER, is_complete
 from render_jobs.profile import Profile
 from render_jobs.protocol import BAD_JOB, ENGINES, LOG_FILE, NO_ENGINE
 from render_jobs.remedies import known_failure
+from render_jobs.standby import Standby
 from render_jobs.storage import OUTPUT_FOLDER, JobRecord, read_record
-from render_jobs.watch import ChildEnd, describe_end, watch_child
+from render_jobs.watch import ChildEnd, describe_end, follow_child, start_child
 
 OnFrame = Callable[[int], None]
 
@@ -58,6 +59,7 @@ def run_job(
     memory_limit_mb: float | None = None,
     block: int = 200,
     on_frame: OnFrame | None = None,
+    standby: Standby | None = None,
 ) -> JobResult:
     """Render what a job folder still lacks, in child processes.
 
@@ -71,6 +73,7 @@ def run_job(
         memory_limit_mb: resident memory at which the child is killed; None sets no limit.
         block: frames a child renders before a fresh one takes over, so that no leak of the renderer can grow.
         on_frame: told the number of each finished frame.
+        standby: a child that has been started beforehand; it renders the first block.
 
     Returns:
         what was rendered and what it took.
@@ -91,10 +94,13 @@ def run_job(
     progress = _Progress(on_frame)
     peak = 0.0
     for frames in _blocks(record, folder / OUTPUT_FOLDER, block):
-        command = _command(folder, engine, device, threads, frames)
+        arguments = _arguments(folder, engine, device, threads, frames)
         log_start = log.stat().st_size if log.exists() else 0
+        child = standby.put_to_work(arguments) if standby is not None and standby.engine == engine else None
+        if child is None:
+            child = start_child(_command(arguments), log)
         try:
-            end = watch_child(command, log, progress.hear, timeout=timeout, memory_limit_mb=memory_limit_mb)
+            end = follow_child(child, log, progress.hear, timeout=timeout, memory_limit_mb=memory_limit_mb)
         finally:
             _clear_remains(folder)
         _judge(end, progress.error, log, log_start)
@@ -134,16 +140,19 @@ def _blocks(record: JobRecord, out: Path, size: int) -> Iterator[range]:
         yield range(part[0], part[-1] + 1)
 
 
-def _command(folder: Path, engine: str, device: str, threads: int, frames: range) -> list[str]:
+def _arguments(folder: Path, engine: str, device: str, threads: int, frames: range) -> list[str]:
     options = {
         "--engine": engine,
         "--device": device,
         "--threads": str(threads),
         "--frames": f"{frames.start}:{frames.stop}",
-        "--parent": str(os.getpid()),
     }
-    pairs = [word for pair in options.items() for word in pair]
-    return [sys.executable, "-X", "faulthandler", "-m", "render_jobs.worker", str(folder), *pairs]
+    return [str(folder), *(word for pair in options.items() for word in pair)]
+
+
+def _command(arguments: Sequence[str]) -> list[str]:
+    parent = ["--parent", str(os.getpid())]
+    return [sys.executable, "-X", "faulthandler", "-m", "render_jobs.worker", *arguments, *parent]
 
 
 def _clear_remains(folder: Path) -> None:

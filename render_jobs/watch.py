@@ -47,8 +47,7 @@ def watch_child(
     """Run a command to its end. However this function is left, the child is gone.
 
     Args:
-        command: what to run. It gets the means to import our packages, no terminal, and a session of its own,
-            so that the terminal's Ctrl-C reaches only us.
+        command: what to run, as :func:`start_child` runs it.
         log: what the child writes to stderr is appended here.
         on_event: told every JSON object that the child prints; other lines are ignored.
         timeout: seconds without a line after which the child counts as hung.
@@ -60,16 +59,52 @@ def watch_child(
     Raises:
         WorkerError: the child hung, took too long or too much memory, or was to stop; it was killed.
     """
-    limits = _Limits(timeout, time_limit, memory_limit_mb, stop)
+    child = start_child(command, log, environment=environment)
+    return follow_child(
+        child,
+        log,
+        on_event,
+        timeout=timeout,
+        memory_limit_mb=memory_limit_mb,
+        time_limit=time_limit,
+        stop=stop,
+    )
+
+
+def start_child(
+    command: Sequence[str], log: Path, *, environment: Mapping[str, str] | None = None, asked: bool = False
+) -> subprocess.Popen[bytes]:
+    """Start a command that :func:`follow_child` can follow; the caller sees to its end.
+
+    It gets the means to import our packages, no terminal, and a session of its own, so that the terminal's
+    Ctrl-C reaches only us.
+
+    Args:
+        asked: give it a pipe as stdin, over which it is told what to do.
+    """
     with log.open("ab") as errors:
-        child = subprocess.Popen(
+        return subprocess.Popen(
             command,
-            stdin=subprocess.DEVNULL,
+            stdin=subprocess.PIPE if asked else subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=errors,
             env=child_environment() | dict(environment or {}),
             start_new_session=True,
         )
+
+
+def follow_child(
+    child: subprocess.Popen[bytes],
+    log: Path,
+    on_event: Callable[[Event], None],
+    *,
+    timeout: float | None,
+    memory_limit_mb: float | None,
+    time_limit: float | None = None,
+    stop: threading.Event | None = None,
+) -> ChildEnd:
+    """Watch a child that :func:`start_child` started, to its end; arguments and errors of `watch_child`."""
+    limits = _Limits(timeout, time_limit, memory_limit_mb, stop)
     try:
         peak = _follow(child, log, on_event, limits)
         return ChildEnd(child.wait(), peak)

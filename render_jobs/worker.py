@@ -17,6 +17,7 @@ import os
 import shutil
 import sys
 import threading
+import time
 import traceback
 from collections.abc import Sequence
 from pathlib import Path
@@ -72,15 +73,20 @@ def leave(code: int) -> NoReturn:
     os._exit(code)
 
 
-def main(arguments: Sequence[str] | None = None) -> NoReturn:
-    """Render the frames of a job that are missing."""
+def main(arguments: Sequence[str] | None = None, asked: float | None = None) -> NoReturn:
+    """Render the frames of a job that are missing.
+
+    Args:
+        arguments: of the command line.
+        asked: the monotonic time at which a process in waiting was asked for this.
+    """
     options = _parse(arguments)
     if options.parent:
         die_with_parent(options.parent)
     be_first_to_go()
     reporter = Reporter(_take_over_output(options.job))
     profile = Profile()
-    profile.add(STARTING, since_start())
+    profile.add(STARTING, since_start() if asked is None else time.monotonic() - asked)
     try:
         _work(options, reporter, profile)
     except BaseException as error:
@@ -126,7 +132,7 @@ def _work(options: argparse.Namespace, reporter: Reporter, profile: Profile) -> 
     scratch.mkdir()
     try:
         with profile.phase(IMPORTING):
-            engine = _load(options.engine)
+            engine = load_engine(options.engine)
         engine.render(
             job=job,
             frames=missing,
@@ -148,7 +154,7 @@ def _work(options: argparse.Namespace, reporter: Reporter, profile: Profile) -> 
         raise RuntimeError(f"the engine ended without frame {absent[0]} ({len(absent)} in all)")
 
 
-def _load(name: str) -> Any:
+def load_engine(name: str) -> Any:
     """The engine's module.
 
     Raises:

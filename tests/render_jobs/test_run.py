@@ -29,6 +29,7 @@ from render_jobs import (
 )
 from render_jobs.devices import parse_device
 from render_jobs.processes import child_environment
+from render_jobs.standby import Standby
 from render_jobs.watch import Event, describe_end, watch_child
 from render_truth import BOX, BOX_FACES, SQUARE, SQUARE_FACES, camera, moving
 
@@ -150,6 +151,50 @@ def test_a_killed_run_leaves_whole_files_and_goes_on_to_the_same_end(
 
 
 @pytest.mark.blender
+def test_a_child_in_waiting_renders_the_same_and_is_used_once(rendered: Path, tmp_path: Path) -> None:
+    small_job().save(tmp_path / "job")
+    with Standby("cycles", tmp_path / "standby.log") as standby:
+        waiting = standby.pid
+        result = run_job(tmp_path / "job", device="cpu", threads=2, block=4, timeout=120, standby=standby)
+        assert standby.put_to_work(["no", "second", "job"]) is None
+    assert result.frames == FRAMES
+    assert outputs(tmp_path / "job") == outputs(rendered)
+    log = (tmp_path / "job" / "render.log").read_text()
+    assert log.count("Fra:0 ") > 1, "what Blender says is in the job's own log"
+    assert not psutil.pid_exists(waiting)
+
+
+@pytest.mark.blender
+def test_a_child_that_died_waiting_costs_nothing(rendered: Path, tmp_path: Path) -> None:
+    small_job().save(tmp_path / "job")
+    with Standby("cycles", tmp_path / "standby.log") as standby:
+        os.kill(standby.pid, signal.SIGKILL)
+        os.waitid(os.P_PID, standby.pid, os.WEXITED | os.WNOWAIT)
+        run_job(tmp_path / "job", device="cpu", threads=2, timeout=120, standby=standby)
+    assert outputs(tmp_path / "job") == outputs(rendered)
+
+
+def test_a_child_in_waiting_tells_what_is_wrong_with_its_job(tmp_path: Path) -> None:
+    small_job().save(tmp_path / "job")
+    (tmp_path / "job" / "camera.npz").write_bytes(b"damaged")
+    with (
+        Standby("cycles", tmp_path / "standby.log") as standby,
+        pytest.raises(RenderJobError, match=r"camera\.npz") as caught,
+    ):
+        run_job(tmp_path / "job", device="cpu", timeout=120, standby=standby)
+    assert not isinstance(caught.value, WorkerError)
+
+
+def test_a_child_in_waiting_ends_when_there_is_no_job_after_all(tmp_path: Path) -> None:
+    with (
+        pytest.raises(LookupError, match="the take failed"),
+        Standby("raster", tmp_path / "standby.log") as standby,
+    ):
+        raise LookupError("the take failed")
+    assert not psutil.pid_exists(standby.pid)
+
+
+@pytest.mark.blender
 def test_a_damaged_texture_is_named_and_not_tried_again(tmp_path: Path) -> None:
     Image.fromarray(np.zeros((8, 8, 3), np.uint8)).save(tmp_path / "skin.png")
     (tmp_path / "skin.png").write_bytes((tmp_path / "skin.png").read_bytes()[:40])
@@ -239,9 +284,22 @@ def test_no_child_survives_its_parent(tmp_path: Path) -> None:
         "import os, time; from render_jobs.processes import die_with_parent; die_with_parent();"
         "print(os.getpid(), flush=True); time.sleep(600)"
     )
-    parent = f"import subprocess, sys; subprocess.run([sys.executable, '-c', {child!r}])"
+    _outlives_no_parent(f"import subprocess, sys; subprocess.run([sys.executable, '-c', {child!r}])")
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the kernel's help is asked for on Linux")
+def test_no_child_in_waiting_survives_its_parent(tmp_path: Path) -> None:
+    _outlives_no_parent(
+        "import time; from pathlib import Path; from render_jobs.standby import Standby\n"
+        f"with Standby('raster', Path({str(tmp_path / 'log')!r})) as standby:\n"
+        "  print(standby.pid, flush=True); time.sleep(600)"
+    )
+
+
+def _outlives_no_parent(code: str) -> None:
+    """Run code that prints the id of a child of its own, kill it, and see the child end."""
     process = subprocess.Popen(
-        [sys.executable, "-c", parent], stdout=subprocess.PIPE, env=child_environment(), text=True
+        [sys.executable, "-c", code], stdout=subprocess.PIPE, env=child_environment(), text=True
     )
     assert process.stdout is not None
     with process.stdout as lines:

@@ -12,12 +12,14 @@ from PIL import Image
 from camera_rigs import Finding, Plan, PlanError
 from render_jobs import PASSES, JobResult, RenderJob, missing_frames, quality_preset, run_job
 from render_jobs.profile import STARTING, Profile, since_start
+from render_jobs.standby import Standby
 from whacamole.body import BodyModel
 from whacamole.dataset import DatasetLayout, Sequence, SequenceLayout, write_summary
 from whacamole.dataset.video import write_video
 from whacamole.errors import TakeError
 from whacamole.labels.camera import Film
 from whacamole.motion import read_motion
+from whacamole.production.bodies import body_of
 from whacamole.production.filming import camera_neighbours, film_of, plan_camera
 from whacamole.production.labelling import write_labels
 from whacamole.production.locations import places_of
@@ -30,22 +32,13 @@ from whacamole.production.worklist import SequenceOrder, motion_checksum
 from whacamole.recipe import Recipe
 from whacamole.take import Take, stage_take
 
-__all__ = ["body_of", "make_sequence", "take_of"]
+__all__ = ["make_sequence", "take_of"]
 
 VIDEO_QUALITY = 12
 """Constant rate factor of rgb.mp4: a training set is no place to save the last third (benchmarks/disk.py)."""
 
 SUBDIVISION = {"draft": 0, "standard": 0, "high": 1}
 """Levels for skin and clothes: the mesh is fine enough for all but close-ups."""
-
-
-def body_of(recipe: Recipe) -> BodyModel:
-    """Return the body model that a recipe names.
-
-    Raises:
-        BodyModelError: the file is no SMPL-X-schema model.
-    """
-    return BodyModel.embedded() if recipe.body_model is None else BodyModel.load(recipe.body_model)
 
 
 def make_sequence(
@@ -82,7 +75,8 @@ def make_sequence(
 
     def fill(sequence: SequenceLayout, work: Path) -> None:
         nonlocal rendered
-        rendered = _make_in(order, sequence, work, say, profile, run)
+        with Standby(order.recipe.engine, work / "standby.log") as standby:  # it loads Blender while we stage
+            rendered = _make_in(order, sequence, work, say, profile, partial(run, standby=standby))
 
     if make_in_place(order.root, order.sequence_id, fill):
         layout = DatasetLayout(order.root)
