@@ -11,7 +11,9 @@ import os
 import re
 import subprocess
 import sys
+import threading
 from collections.abc import Callable
+from concurrent.futures import Future
 from dataclasses import dataclass
 from typing import Any
 
@@ -102,6 +104,23 @@ def choose_engine(wanted: str = "auto") -> tuple[str, str]:
             return name, note
         failures.append(f"{name} cannot run ({found.found}): {found.remedy}")
     raise EngineError("; ".join(failures))
+
+
+def seek_engine(wanted: str = "auto") -> Future[tuple[str, str]]:
+    """Begin :func:`choose_engine` in a thread, and return what will hold its outcome.
+
+    The thread holds up nothing: a process that ends before the answer ends the probe, too.
+    """
+    sought: Future[tuple[str, str]] = Future()
+
+    def seek() -> None:
+        try:
+            sought.set_result(choose_engine(wanted))
+        except BaseException as error:
+            sought.set_exception(error)
+
+    threading.Thread(target=seek, daemon=True, name="seek-engine").start()
+    return sought
 
 
 def _try_cycles() -> str:

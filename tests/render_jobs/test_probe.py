@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from render_jobs import EngineError, RenderJobError
-from render_jobs.probe import TRIES, Probe, choose_engine, explain_failure, probe
+from render_jobs.probe import TRIES, Probe, choose_engine, explain_failure, probe, seek_engine
 
 FAILURES = [
     ("ImportError: libX11.so.6: cannot open shared object file: No such file or directory", "libx11-6"),
@@ -88,6 +88,16 @@ def test_the_best_engine_that_works_is_taken_and_a_lesser_one_is_announced(
         choose_engine()
     with pytest.raises(RenderJobError, match="'unreal' is not one of auto, cycles, raster, eevee"):
         choose_engine("unreal")
+
+
+def test_an_engine_sought_beside_other_work_is_the_one_chosen_with_its_errors(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    _pretend(monkeypatch, cycles=False, raster=True)
+    assert seek_engine().result(timeout=60) == choose_engine()
+    _pretend(monkeypatch, cycles=False, raster=False)
+    with pytest.raises(EngineError, match=r"cycles cannot run.*; raster cannot run"):
+        seek_engine().result(timeout=60)
 
 
 def test_of_a_traceback_the_message_is_told_and_not_the_code() -> None:

@@ -182,8 +182,9 @@ def render(
     Stopped at any moment and started again with the same options, it goes on where it was.
     """
     from render_jobs.devices import parse_device
+    from whacamole.dataset.layout import DatasetLayout
     from whacamole.production.means import Limits, Means, Shard
-    from whacamole.production.run import produce
+    from whacamole.production.opening import EngineSearch
     from whacamole.recipe import load_recipe
 
     parse_device(device)  # a mistyped name is told before anything begins
@@ -198,6 +199,11 @@ def render(
         "allow_breaches": allow_breaches,
     }  # fmt: skip
     overrides: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
+    asked = load_recipe(recipe, overrides)
+    # begun before the rest of the package is loaded, which takes about as long
+    search = None if dry_run else EngineSearch(asked, DatasetLayout(out.resolve()))
+    from whacamole.production.run import produce
+
     means = Means(
         jobs=jobs,
         cluster=cluster,
@@ -213,12 +219,6 @@ def render(
         ),
         check_disk=disk_check,
     )
-    result = produce(
-        load_recipe(recipe, overrides),
-        out,
-        means,
-        dry_run=dry_run,
-        quiet=quiet or json_output,
-    )
+    result = produce(asked, out, means, dry_run=dry_run, quiet=quiet or json_output, search=search)
     result.report(quiet=quiet, as_json=json_output, profile=profile)
     raise typer.Exit(0 if result.complete else 1)

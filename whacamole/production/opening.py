@@ -4,38 +4,47 @@ import contextlib
 import fcntl
 import os
 from collections.abc import Iterator
+from concurrent.futures import Future
 
 from rich.console import Console
 
-from render_jobs.probe import choose_engine
+from render_jobs.probe import seek_engine
 from whacamole.dataset import DatasetLayout, read_json
 from whacamole.dataset.files import write_json
 from whacamole.errors import DatasetError
 from whacamole.production.pulse import run_name
 from whacamole.recipe import Recipe
 
-__all__ = ["check_folder", "index_lock", "open_dataset_for", "settle_engine"]
+__all__ = ["EngineSearch", "check_folder", "index_lock", "open_dataset_for"]
 
 MAY_DIFFER = frozenset({"motions", "shots_per_motion", "limit", "test_fraction", "allow_breaches"})
 """What may change between two runs into one dataset: it adds sequences, but alters none."""
 
 
-def settle_engine(recipe: Recipe, layout: DatasetLayout, quiet: bool) -> Recipe:
-    """Settle "auto": what the dataset was begun with, else the best engine that this machine can run.
+class EngineSearch:
+    """Settles "auto" while other work goes on: what the dataset was begun with, else the best engine here."""
 
-    Raises:
-        EngineError: nothing can render here.
-    """
-    if recipe.engine != "auto":
-        return recipe
-    kept = layout.root / "recipe.json"
-    if kept.exists():
-        engine, note = str(read_json(kept)["engine"]), ""
-    else:
-        engine, note = choose_engine()
-    if note and not quiet:
-        Console(stderr=True, soft_wrap=True).print(note, markup=False)
-    return _with_engine(recipe, engine)
+    def __init__(self, recipe: Recipe, layout: DatasetLayout) -> None:
+        self._kept = layout.root / "recipe.json"
+        self._recipe = recipe
+        self._sought: Future[tuple[str, str]] | None = None
+        if recipe.engine == "auto" and not self._kept.exists():
+            self._sought = seek_engine()
+
+    def settled(self, *, quiet: bool) -> Recipe:
+        """Return the recipe with an engine; waits until it is found.
+
+        Raises:
+            EngineError: nothing can render here.
+        """
+        if self._recipe.engine != "auto":
+            return self._recipe
+        if self._sought is None:
+            return _with_engine(self._recipe, str(read_json(self._kept)["engine"]))
+        engine, note = self._sought.result()
+        if note and not quiet:
+            Console(stderr=True, soft_wrap=True).print(note, markup=False)
+        return _with_engine(self._recipe, engine)
 
 
 def check_folder(recipe: Recipe, layout: DatasetLayout) -> None:

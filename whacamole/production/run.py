@@ -24,7 +24,7 @@ from whacamole.errors import DatasetError
 from whacamole.production.attempt import DISK_FULL, AttemptError, attempt
 from whacamole.production.locations import forget_places, missing_places, read_places
 from whacamole.production.means import Limits, Means
-from whacamole.production.opening import check_folder, index_lock, open_dataset_for, settle_engine
+from whacamole.production.opening import EngineSearch, check_folder, index_lock, open_dataset_for
 from whacamole.production.progress import Monitor
 from whacamole.production.pulse import RunRecord, run_name
 from whacamole.production.report import Production
@@ -39,7 +39,13 @@ Work = Callable[[SequenceOrder], bool]
 
 
 def produce(
-    recipe: Recipe, out: Path, means: Means | None = None, *, dry_run: bool = False, quiet: bool = False
+    recipe: Recipe,
+    out: Path,
+    means: Means | None = None,
+    *,
+    dry_run: bool = False,
+    quiet: bool = False,
+    search: EngineSearch | None = None,
 ) -> Production:
     """Make, or finish, the dataset of ``recipe`` in the folder ``out``.
 
@@ -47,6 +53,7 @@ def produce(
         means: with what; none: this machine, as suits it.
         dry_run: only say what would be made.
         quiet: show no progress.
+        search: for the engine, where it has begun already.
 
     Raises:
         MotionError: there is no motion to film.
@@ -61,9 +68,10 @@ def produce(
     worklist = _worklist(recipe, layout, means)
     if dry_run:
         return Production(layout.root, worklist, {}, 0.0, {}, dry_run=True, problems=missing_places(recipe))
+    search = search or EngineSearch(recipe, layout)
     if means.check_disk:
         check_disk(worklist.open, means.jobs or 1, layout.root)
-    settled = settle_engine(recipe, layout, quiet)
+    settled = search.settled(quiet=quiet)
     try:
         places = read_places(settled, layout, quiet=quiet)
         settled = open_dataset_for(settled, layout, engine_is_ours=recipe.engine == "auto")
@@ -182,9 +190,9 @@ def _note_failure(order: SequenceOrder, error: str) -> None:
 
 
 def _facts(recipe: Recipe) -> dict[str, Any]:
-    """Return what ``dataset.json`` says of the whole dataset."""
+    """Return what ``dataset.json`` says of the whole dataset beside the recipe."""
     from whacamole.labels import read_regions
-    from whacamole.production.sequence import body_of
+    from whacamole.production.bodies import body_of
     from whacamole.wardrobe.shells import checked_textures
 
     body = body_of(recipe)

@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 
 import numpy as np
-import trimesh
 from numpy.typing import NDArray
 
 from render_jobs import Material
@@ -105,6 +104,8 @@ def plant_trees(
 
 def _crown(base: Size, radius: float, rng: np.random.Generator) -> Solid:
     """Return a crown: a few leafy balls grown into each other, lumpy at the scale of branches."""
+    import trimesh  # late: it takes longer to load than all else here
+
     ball = trimesh.creation.icosphere(subdivisions=3)
     vertices, faces, uv = [], [], []
     for index in range(int(rng.integers(3, 6))):
