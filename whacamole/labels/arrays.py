@@ -1,4 +1,4 @@
-"""Array types of the labels, and two things done with them."""
+"""Array types of the labels, and what is done with them everywhere."""
 
 from typing import Any, TypeVar
 
@@ -42,3 +42,14 @@ def rows(values: NDArray[_T], ids: Indices) -> NDArray[_T]:
 def dots(a: Float64s, b: Float64s) -> Float64s:
     """Dot product of each of the vectors ``(N, 3)`` with its partner: ``(N,)``."""
     return np.asarray(a[:, 0] * b[:, 0] + a[:, 1] * b[:, 1] + a[:, 2] * b[:, 2], dtype=np.float64)
+
+
+def lengths(vectors: Float64s) -> Float64s:
+    """Of vectors ``(N, 3)``: ``(N,)``."""
+    return np.asarray(np.sqrt(dots(vectors, vectors)), dtype=np.float64)
+
+
+def cross(a: Float64s, b: Float64s) -> Float64s:
+    """Cross product of each of the vectors ``(N, 3)`` with its partner: ``(N, 3)``."""
+    (ax, ay, az), (bx, by, bz) = a.T, b.T
+    return np.column_stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])

@@ -5,15 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from whacamole.labels.arrays import Float64s, Indices, dots, ranges, rows
-from whacamole.labels.mesh import face_normals
+from whacamole.labels.arrays import Float64s, Indices, cross, dots, lengths, rows
 from whacamole.labels.patches import PosedSkin
 
 _TIE = 1e-9  # metres within which triangles count as equally near: they share the closest edge or corner
 _FIRST_SAMPLES = 8
-_SPLIT_SQUARE = (
-    0.025**2
-)  # squared metres: triangles with a longer side are also sampled at the middles of their sides
+_ROUNDED = 1 + 1e-6  # covers the rounding of a formula that subtracts what is nearly equal
 _AT = 1e-9  # barycentric weight below which the closest point counts as on an edge
 
 
@@ -40,44 +37,30 @@ _Pairs = tuple[Indices, Indices, Float64s, Float64s]
 class SkinSearch:
     """Exact signed distance to part of a skin.
 
-    The search goes by samples: the corners, and the middles of the sides of long triangles, which these cut
-    into four. Let a triangle, cut or not, have sides of at most e; let q be the point of the skin closest to
-    p, in that triangle, and x its corner nearest to q. Then |q - x|² <= e²/3, and |p - x|² <= |p - q|² +
-    e²/3: inside the triangle p - q stands at right angles to it, on an edge at right angles to the edge, and
-    at a corner x is q. So the smallest |p - x|² - e²/3 over all samples bounds |p - q|² from below, and the
-    closest triangle is around one of the samples where it is at most |p - q|². With a fourth coordinate
-    sqrt(R² - e²/3), R² the largest e²/3, this is a plain nearest-neighbour query for a k-d tree.
+    The search goes by corners. Let q be the point of the skin closest to p, on some triangle, and x the
+    corner of it nearest to q. Then |p - x|² <= |p - q|² + |q - x|²: inside the triangle p - q is at right
+    angles to it, on an edge at right angles to the edge, and at a corner x is q. And |q - x| <= s; s² is what
+    :meth:`PosedSkin.corner_reach` gives. So the least |p - x|² - s² over all corners, s the largest of the
+    triangles around each, bounds |p - q|² from below, and the closest triangle is around one of the corners
+    where it is at most |p - q|². With a fourth coordinate sqrt(S² - s²), S the largest s, this is a plain
+    query for the nearest neighbour in a k-d tree.
 
     Args:
         skin: a closed skin.
-        among: some of its points; the triangles with a corner among them are searched.
+        among: some of its patches; the triangles with a corner in them are searched.
     """
 
     def __init__(self, skin: PosedSkin, among: Indices) -> None:
         self._points, self._map = skin.points, skin.map
-        count = len(skin.points)
-        flag = np.zeros(count, dtype=np.bool_)
-        flag[among] = True
-        triangles = np.flatnonzero(flag.take(skin.map.corner).any(axis=0))
-        corners = skin.map.corner.take(triangles, axis=1)
-        sides = skin.map.triangle_edge.take(triangles, axis=1)
-        longest = skin.longest_side(corners)
-        split = longest > _SPLIT_SQUARE
-        slack = np.full(count + skin.map.edge.shape[1], -1.0)
-        bound = np.where(split, longest / 12, longest / 3)
-        for column in corners:
-            np.maximum.at(slack, column, bound)
-        halves = count + sides[:, split]
-        bound = bound[split]
-        for column in halves:
-            np.maximum.at(slack, column, bound)
-        self._sample = np.flatnonzero(slack >= 0)
-        slack = slack[self._sample]
-        whole, halved = np.split(self._sample, [np.searchsorted(self._sample, count)])
-        start, end = skin.map.edge.take(halved - count, axis=1)
-        middles = (rows(self._points, start) + rows(self._points, end)) / 2
-        self._places = np.concatenate([rows(self._points, whole), middles])
+        triangles = _distinct(skin.map.around.of(among), len(skin.map.faces))
+        bound = np.zeros(len(skin.map.faces))
+        bound[triangles] = _ROUNDED * skin.corner_reach(triangles)
+        self._sample = _distinct(skin.map.rim.of(among), len(skin.points))
+        count = skin.map.owner.counts(self._sample)
+        around = bound.take(skin.map.owner.of(self._sample))
+        slack = np.maximum.reduceat(around, np.cumsum(count) - count)
         self._largest = float(slack.max())
+        self._places = rows(skin.points, self._sample)
         lifted = np.column_stack([self._places, np.sqrt(self._largest - slack)])
         self._tree = cKDTree(lifted, leafsize=32, balanced_tree=False, compact_nodes=False)
 
@@ -91,7 +74,7 @@ class SkinSearch:
         high = np.full(len(queries), np.inf)
         found = np.flatnonzero(np.isfinite(power[:, 0]))
         step = rows(queries, found) - rows(self._places, sample[found, 0])
-        high[found] = np.sqrt(dots(step, step))
+        high[found] = lengths(step)
         return low, high
 
     def closest(self, queries: Float64s, within: float = np.inf) -> Closest:
@@ -144,11 +127,17 @@ class SkinSearch:
     def _pairs(self, queries: Float64s, query: Indices, sample: Indices) -> _Pairs:
         """Queries against the triangles around samples, one sample a row."""
         sample = self._sample[sample]
-        start = self._map.owner_start[sample]
-        which, offset = ranges(self._map.owner_start[sample + 1] - start)
-        triangle, query = self._map.owner[start[which] + offset], query[which]
+        triangle = self._map.owner.of(sample)
+        query = np.repeat(query, self._map.owner.counts(sample))
         corners = rows(self._points, rows(self._map.faces, triangle))
         return query, triangle, *_square_distance(rows(queries, query), corners)
+
+
+def _distinct(ids: Indices, count: int) -> Indices:
+    """The distinct numbers below ``count`` among some, ascending."""
+    flag = np.zeros(count, dtype=np.bool_)
+    flag[ids] = True
+    return np.flatnonzero(flag)
 
 
 def _square_distance(points: Float64s, corners: Float64s) -> tuple[Float64s, Float64s]:
@@ -194,11 +183,12 @@ def _feature_angle(corners: Float64s, weight: Float64s) -> Float64s:
         row = np.arange(len(at_corner))
         a = triangle[row, (here + 1) % 3] - triangle[row, here]
         b = triangle[row, (here + 2) % 3] - triangle[row, here]
-        angle[at_corner] = np.arctan2(np.linalg.norm(np.cross(a, b), axis=1), dots(a, b))
+        angle[at_corner] = np.arctan2(lengths(cross(a, b)), dots(a, b))
     return angle
 
 
 def _unit_normals(corners: Float64s) -> Float64s:
-    normals = face_normals(corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3))
-    length = np.linalg.norm(normals, axis=1, keepdims=True)
-    return np.divide(normals, length, out=np.zeros_like(normals), where=length > 0)
+    normals = cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    size = lengths(normals)
+    unit: Float64s = normals / np.where(size > 0, size, 1.0)[:, None]
+    return unit

@@ -54,10 +54,10 @@ def self_touch(skin: PosedSkin, separable: Bools, threshold: float) -> Bools:
             continue
         pair = (own[rows] == one) & (own[columns] == other)
         mine = patches.points(np.unique(named[rows[pair]]))
-        theirs = patches.points(np.unique(named[columns[pair]]))
-        low, _ = SkinSearch(skin, theirs).bounds(skin.points[mine], 1.001 * threshold)
+        search = SkinSearch(skin, np.unique(named[columns[pair]]))
+        low, _ = search.bounds(skin.points[mine], 1.001 * threshold)
         asked = mine[low <= threshold]
         if len(asked):
-            gap = np.abs(SkinSearch(skin, theirs).closest(skin.points[asked]).distance)
+            gap = np.abs(search.closest(skin.points[asked]).distance)
             touching[one, other] = touching[other, one] = bool((gap <= threshold).any())
     return touching

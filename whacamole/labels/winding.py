@@ -7,7 +7,7 @@ outside find one that meets none.
 
 import numpy as np
 
-from whacamole.labels.arrays import Bools, Float64s, Indices, ranges, rows
+from whacamole.labels.arrays import Bools, Float64s, Indices, cross, dots, rows
 from whacamole.labels.patches import PosedSkin
 
 _AXES = np.random.default_rng(0).standard_normal((16, 3, 3))
@@ -21,10 +21,9 @@ def inside(points: Float64s, skin: PosedSkin) -> Bools:
     if not len(points):
         return np.zeros(0, dtype=np.bool_)
     ray, met = _emptiest_rays(points, skin)
-    begin = skin.map.patches.face_start
     query, patch = np.nonzero(met)
-    owner, offset = ranges(begin[patch + 1] - begin[patch])
-    faces, query = skin.map.patches.faces[begin[patch][owner] + offset], query[owner]
+    faces = skin.map.own.of(patch)
+    query = np.repeat(query, skin.map.own.counts(patch))
     crossings = _crossings(points, ray, query, skin, faces)
     number = np.bincount(query, weights=crossings, minlength=len(points))
     return number > 0.5
@@ -56,7 +55,7 @@ def _crossings(points: Float64s, ray: Indices, query: Indices, skin: PosedSkin, 
     enters = (left[0] <= 0) & (left[1] <= 0) & (left[2] <= 0)
     hit = np.flatnonzero(leaves | enters)
     a, b, c = (corner[hit] for corner in corners)
-    volume = np.einsum("ij,ij->i", a, np.cross(b, c))
+    volume = dots(a, cross(b, c))
     forward = np.where(leaves[hit], volume > 0, volume < 0)
     sign = np.zeros(len(faces))
     sign[hit] = np.where(leaves[hit], 1.0, -1.0) * forward

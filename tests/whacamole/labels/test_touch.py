@@ -5,15 +5,18 @@ Brute force here is a slow and plain second way that shares no code with the pac
 
 import numpy as np
 import pytest
+import scipy.sparse
 import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
 from whacamole.body import BodyParams
 from whacamole.labels import BodyParts, model_parts
 from whacamole.labels.closest import SkinSearch
+from whacamole.labels.flood import _connect
 from whacamole.labels.patches import PosedSkin, SkinMap
 from whacamole.labels.skin import OuterSkin
 from whacamole.labels.touch import EXACT_WITHIN, Touch, touch
@@ -146,7 +149,7 @@ def test_signed_distance_to_a_capsule():
     points = rng.uniform([-0.6, -0.6, -0.6], [0.6, 0.6, 1.6], size=(500, 3))
     axis = np.clip(points[:, 2], vertices[:, 2].min() + 0.25, vertices[:, 2].max() - 0.25)
     exact = np.linalg.norm(points - np.column_stack([np.zeros((500, 2)), axis]), axis=1) - 0.25
-    found = SkinSearch(toy.posed(vertices), np.arange(len(toy.map.ids))).closest(points[:, :])
+    found = SkinSearch(toy.posed(vertices), np.arange(len(toy.map.patches.part))).closest(points[:, :])
     np.testing.assert_allclose(found.distance, exact, atol=4e-3)  # the mesh lies inside the capsule
     clear = np.abs(exact) > 5e-3
     np.testing.assert_array_equal(found.distance[clear] < 0, exact[clear] < 0)
@@ -163,12 +166,41 @@ def test_signed_distance_by_brute_force(seed):
     points = np.concatenate(
         [rng.normal(scale=0.8, size=(60, 3)), 0.999 * vertices[:20], 1.001 * vertices[:20]]
     )
-    search = SkinSearch(toy.posed(vertices), np.arange(len(vertices)))
+    search = SkinSearch(toy.posed(vertices), np.arange(len(toy.map.patches.part)))
     expected = signed_distances(points, vertices[mesh.faces])
     np.testing.assert_allclose(search.closest(points).distance, expected, atol=1e-9)
     low, high = search.bounds(points, 10.0)
     assert (low <= np.abs(expected) + 1e-12).all()
     assert (high >= np.abs(expected) - 1e-12).all()
+
+
+@given(seed=st.integers(0, 2**32 - 1))
+@settings(max_examples=15, deadline=None, derandomize=True)
+def test_points_of_a_triangle_are_within_reach_of_a_corner(seed):
+    """Needles and flat triangles among them. The bound is attained; twice as wide at most where obtuse."""
+    rng = np.random.default_rng(seed)
+    ball = trimesh.creation.icosphere(subdivisions=1)
+    vertices, faces = np.asarray(ball.vertices), np.asarray(ball.faces)
+    skin = Toy(vertices, faces, one_part(vertices)).posed(
+        vertices * [1, 1, 10.0 ** rng.uniform(-9, 1)] + rng.normal(scale=0.2, size=vertices.shape) * [1, 1, 0]
+    )
+    reach = skin.corner_reach(np.arange(len(faces)))
+    weights = rng.dirichlet([0.7, 0.7, 0.7], size=4000)
+    for triangle, bound in zip(skin.points[skin.map.faces], reach, strict=True):
+        nearest = np.linalg.norm((weights @ triangle)[:, None] - triangle, axis=2).min(axis=1).max()
+        assert nearest <= np.sqrt(bound) * (1 + 1e-6)
+        assert nearest >= 0.45 * np.sqrt(bound)
+
+
+@given(seed=st.integers(0, 2**32 - 1))
+@settings(max_examples=30, deadline=None, derandomize=True)
+def test_components_are_those_of_scipy(seed):
+    rng = np.random.default_rng(seed)
+    start, end = rng.integers(0, 200, size=(2, rng.integers(0, 250)))
+    graph = scipy.sparse.coo_array((np.ones(len(start)), (start, end)), shape=(200, 200))
+    _, expected = connected_components(graph, directed=False)
+    label = _connect(start, end, 200)
+    np.testing.assert_array_equal(label[:, None] == label, expected[:, None] == expected)
 
 
 @pytest.mark.parametrize(("seed", "offset"), [(3, 0.45), (4, 0.3), (6, 0.0)])
