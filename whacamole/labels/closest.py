@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.spatial import cKDTree
+from scipy.spatial.distance import cdist
 
 from whacamole.labels.arrays import Float64s, Indices, cross, dots, lengths, rows
 from whacamole.labels.patches import PosedSkin
@@ -52,13 +53,16 @@ class SkinSearch:
 
     def __init__(self, skin: PosedSkin, among: Indices) -> None:
         self._points, self._map = skin.points, skin.map
-        triangles = _distinct(skin.map.around.of(among), len(skin.map.faces))
-        bound = np.zeros(len(skin.map.faces))
-        bound[triangles] = _ROUNDED * skin.corner_reach(triangles)
-        self._sample = _distinct(skin.map.rim.of(among), len(skin.points))
-        count = skin.map.owner.counts(self._sample)
-        around = bound.take(skin.map.owner.of(self._sample))
-        slack = np.maximum.reduceat(around, np.cumsum(count) - count)
+        self._centres = skin.centre[among]
+        around = np.zeros(len(skin.map.faces), dtype=np.bool_)
+        around[skin.map.around.of(among)] = True
+        corners = skin.map.corner.take(np.flatnonzero(around), axis=1)
+        slack = np.full(len(skin.points), -1.0)
+        bound = _ROUNDED * skin.corner_reach(corners)
+        for column in corners:
+            np.maximum.at(slack, column, bound)
+        self._sample = np.flatnonzero(slack >= 0)
+        slack = slack.take(self._sample)
         self._largest = float(slack.max())
         self._places = rows(skin.points, self._sample)
         lifted = np.column_stack([self._places, np.sqrt(self._largest - slack)])
@@ -76,6 +80,11 @@ class SkinSearch:
         step = rows(queries, found) - rows(self._places, sample[found, 0])
         high[found] = lengths(step)
         return low, high
+
+    def at_most(self, queries: Float64s) -> Float64s:
+        """A wide upper bound ``(N,)`` of the unsigned distance [m]."""
+        far: Float64s = cdist(queries, self._centres).min(axis=1)
+        return far
 
     def closest(self, queries: Float64s, within: float = np.inf) -> Closest:
         """Signed distances to the triangles searched, and the corners they were found at.
@@ -131,13 +140,6 @@ class SkinSearch:
         query = np.repeat(query, self._map.owner.counts(sample))
         corners = rows(self._points, rows(self._map.faces, triangle))
         return query, triangle, *_square_distance(rows(queries, query), corners)
-
-
-def _distinct(ids: Indices, count: int) -> Indices:
-    """The distinct numbers below ``count`` among some, ascending."""
-    flag = np.zeros(count, dtype=np.bool_)
-    flag[ids] = True
-    return np.flatnonzero(flag)
 
 
 def _square_distance(points: Float64s, corners: Float64s) -> tuple[Float64s, Float64s]:

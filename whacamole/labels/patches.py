@@ -199,13 +199,12 @@ class PosedSkin:
         step = rows(self.points, rim.values) - np.repeat(centre, np.diff(rim.start), axis=0)
         return centre, np.sqrt(np.maximum.reduceat(dots(step, step), rim.start[:-1]))
 
-    def corner_reach(self, triangles: Indices) -> Float64s:
-        """How far from all their corners points of triangles are, at most, squared [m²].
+    def corner_reach(self, corners: Indices) -> Float64s:
+        """How far points of triangles ``(3, F)`` are from all their corners, at most, squared [m²].
 
         In an acute triangle the radius of the circle round it, at the centre. In another at most half of the
         longest side, where the bisectors of the two others meet it.
         """
-        corners = self.map.corner.take(triangles, axis=1)
         sides = np.zeros(corners.shape)
         for axis in self._by_axis:
             at = axis.take(corners)

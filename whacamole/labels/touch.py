@@ -10,22 +10,17 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.distance import cdist
 
-from whacamole.labels.arrays import Bools, Float64s, Indices, lengths, rows
-from whacamole.labels.closest import SkinSearch
+from whacamole.labels.arrays import Bools, Float64s, Indices, rows
+from whacamole.labels.bounds import TIE_WITHIN, Bounds, bound
+from whacamole.labels.closest import Closest, SkinSearch
 from whacamole.labels.flood import Flood, flood, one_of_each
-from whacamole.labels.patches import PosedSkin, SkinMap, members
+from whacamole.labels.patches import PosedSkin, SkinMap
 from whacamole.labels.winding import inside
 
 EXACT_WITHIN = 0.05
 """Gaps up to this are exact [m]; longer ones are measured between some vertices and may be too long."""
 
 _ROWS_AT_ONCE = 1024
-
-_TIE_WITHIN = (
-    0.03  # metres from which B is searched whatever the need, so that most of A's edges are seen clear
-)
-
-_CELL_REACH = 0.04  # metres: points farther than this from the centre of their cell are always looked at
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,13 +42,15 @@ class Touch:
 class _Side:
     """What one direction, points of A against the skin of B, has found so far.
 
-    ``near`` lists points whose signed distance is exact, with the corner of B they are nearest to.
+    ``near`` lists points whose signed distance is exact, with the corner of B they are nearest to; ``within``
+    points inside B, exact or not.
     """
 
     near: Indices
     distance: Float64s
     corner: Indices
     gap: Float64s
+    within: Indices
 
 
 def touch(a: PosedSkin, b: PosedSkin, num_parts: int, threshold: float) -> tuple[Touch, Touch]:
@@ -107,89 +104,82 @@ def _one_way(a: PosedSkin, b: PosedSkin, apart: Float64s, gap: Float64s, thresho
     if not len(mine):
         return _far_or_enclosed(a, b, gap)
     # The others of B are farther than ``need`` from all of these, and from each as far as ``clear``.
-    theirs = (apart[mine] <= np.maximum(need[a.map.patches.part[mine], None], _TIE_WITHIN)).any(axis=0)
+    theirs = (apart[mine] <= np.maximum(need[a.map.patches.part[mine], None], TIE_WITHIN)).any(axis=0)
     clear = np.where(theirs, np.inf, apart).min(axis=1)
     search = SkinSearch(b, np.flatnonzero(theirs))
-    bounds = _bounds(a, search, mine, clear, need, threshold)
+    bounds = bound(a, search, mine, clear, need, threshold)
     cell_low = apart.min(axis=1)[a.map.cell_patch]
     cell_low[bounds.cells] = bounds.cell_low
     close = bounds.close
     sides = flood(a, b, close, bounds.low, bounds.cells, cell_low)
     asked = np.flatnonzero(~sides.free | (bounds.low[sides.points] <= bounds.need[part[sides.points]]))
-    chosen, free, enclosed = sides.points[asked], sides.free[asked], sides.enclosed[asked]
-    distance, corner = np.full(len(chosen), np.inf), np.zeros(len(chosen), dtype=np.intp)
-    high = bounds.high[chosen]
-    bounded = np.flatnonzero(np.isfinite(high))
-    found = search.closest(a.points[chosen[bounded]], float(high[bounded].max(initial=0.0)))
-    distance[bounded], corner[bounded] = found.distance, found.corner
-    # Where the patches of B left out may be nearer than what was found, all of B must be searched.
-    again = np.flatnonzero(~free & (np.abs(distance) > clear[patch[chosen]]) | np.isinf(distance))
-    if len(again):
-        more = _search_around(b, a.points[chosen[again]]).closest(a.points[chosen[again]])
-        distance[again], corner[again] = more.distance, more.corner
+    clear = clear[patch]
+    clear[sides.points[sides.free]] = np.inf  # nearer than what was left out, if they matter
+    within = sides.points[sides.enclosed]
+    deep = _own_deepest(a, within, bounds)
+    asked = asked[~sides.enclosed[asked]]
+    chosen, free = sides.points[asked], sides.free[asked]
+    count = len(chosen)
+    chosen = np.append(chosen, within[deep])
+    found = _measured(a, b, search, chosen, bounds.high, clear)
+    more = within[~deep]
+    more = more[_maybe_deepest(a, b, more, bounds.high, part[found.corner[count:]], found.distance[count:])]
+    rest = _measured(a, b, search, more, bounds.high, clear)
+    chosen, corner = np.append(chosen, more), np.append(found.corner, rest.corner)
+    by_normals = found.distance[:count]
     low = bounds.low
-    low[chosen[~free]] = np.abs(distance[~free])
-    group = np.where(free | enclosed, -1, sides.group[asked])
-    group[_outside(a, low, sides, chosen, group)] = -1
-    agreed = np.where(enclosed, -np.abs(distance), _agree(distance, group))
-    doubtful = _doubtful(distance, agreed, group, (part[chosen], part[corner]), len(gap), threshold)
+    low[chosen[:count][~free]] = np.abs(by_normals[~free])
+    group = np.where(free, -1, sides.group[asked])
+    group[_outside(a, low, sides, chosen[:count], group)] = -1
+    agreed = _agree(by_normals, group)
+    distance = np.concatenate([agreed, -np.abs(found.distance[count:]), -np.abs(rest.distance)])
+    doubtful = _doubtful(by_normals, distance, group, (part[chosen], part[corner]), len(gap), threshold)
     told = inside(a.points[chosen[doubtful]], b)
     turned = group[doubtful[told != (agreed[doubtful] < 0)]]
-    agreed[np.isin(group, turned)] *= -1
-    return _Side(chosen, agreed, corner, gap)
+    distance[:count][np.isin(group, turned)] *= -1
+    return _Side(chosen, distance, corner, gap, within)
 
 
-@dataclass(frozen=True, eq=False)
-class _Bounds:
-    """How far points of A are from B, at least and at most.
+def _own_deepest(a: PosedSkin, within: Indices, bounds: Bounds) -> Bools:
+    """Which of the points ``within`` B may be the deepest of their part."""
+    part = a.map.part[within]
+    low = bounds.low[within]
+    deepest = np.zeros(len(bounds.need))
+    np.maximum.at(deepest, part, np.where(low < np.inf, low, 0.0))
+    return np.asarray(bounds.high[within] >= deepest[part], dtype=np.bool_)
 
-    Attributes:
-        low: ``(n,)`` at least [m]; inf outside the patches asked about.
-        high: ``(n,)`` at most [m]; inf where it is not known.
-        close: points whose bounds are their own. Each other one is farther than ``need``, and nearer to the
-            centre of its cell than that is to B.
-        cells: cells of the patches asked about.
-        cell_low: distance of their centres, at least [m].
-        need: ``(C + 1,)`` points of a part farther than this do not matter [m].
+
+def _maybe_deepest(
+    a: PosedSkin, b: PosedSkin, within: Indices, high: Float64s, part: Indices, depth: Float64s
+) -> Bools:
+    """Which of the points ``within`` B may be the deepest of those closest to some part of B.
+
+    Of others the ``part`` and ``depth`` are known. The closest point of B lies in a patch whose ball is no
+    farther than the point may be deep.
     """
-
-    low: Float64s
-    high: Float64s
-    close: Indices
-    cells: Indices
-    cell_low: Float64s
-    need: Float64s
-
-
-def _bounds(
-    a: PosedSkin, search: SkinSearch, mine: Indices, clear: Float64s, need: Float64s, threshold: float
-) -> _Bounds:
-    """Bounds for the points of some patches: by the centres of their cells, then where needed their own."""
-    part, patch, cells = a.map.part, a.map.patches.patch, a.map.cells
-    which, points = members(a.map.cell_start, mine), a.map.patches.points(mine)
-    owner = np.repeat(np.arange(len(which)), cells.sizes[which])
-    centre = rows(a.points, cells.centre[which])
-    reach = lengths(rows(a.points, points) - rows(centre, owner))
-    cell_low, cell_high = search.bounds(centre, 1.001 * float(need.max()) + _CELL_REACH)
-    np.minimum(cell_low, clear[a.map.cell_patch[which]], out=cell_low)
-    low, high = np.full(len(part), np.inf), np.full(len(part), np.inf)
-    low[points] = np.minimum(cell_low[owner] - reach, clear[patch[points]])
-    high[points] = cell_high[owner] + reach
-    need = _lowered(need, cells.part[which], cell_high, threshold)
-    close = points[low[points] <= need[part[points]]]
-    within = max(float(need[part[close]].max(initial=0.0)), _TIE_WITHIN)
-    own_low, own_high = search.bounds(rows(a.points, close), 1.001 * within)
-    low[close] = np.maximum(low[close], np.minimum(own_low, clear[patch[close]]))
-    high[close] = np.minimum(high[close], own_high)
-    need = _lowered(need, part[close], own_high, threshold)
-    return _Bounds(low, high, close, which, cell_low, need)
+    deepest = np.zeros(int(a.map.part.max()) + 2)
+    np.maximum.at(deepest, part, np.abs(depth))
+    most = high[within, None]
+    may = deepest[b.map.patches.part] < most
+    may &= cdist(rows(a.points, within), b.centre) - b.radius <= most
+    return np.asarray(may.any(axis=1), dtype=np.bool_)
 
 
-def _lowered(need: Float64s, part: Indices, high: Float64s, threshold: float) -> Float64s:
-    """``need``, given points of some parts that are at most ``high`` from B; at least the threshold."""
-    need = need.copy()
-    np.minimum.at(need, part, high)
-    return np.maximum(need, threshold)
+def _measured(
+    a: PosedSkin, b: PosedSkin, search: SkinSearch, points: Indices, high: Float64s, clear: Float64s
+) -> Closest:
+    """Distances of points of A to all of B: searched anew where patches left out may be nearer."""
+    if not len(points):
+        return Closest(np.zeros(0), points)
+    places, most = rows(a.points, points), high[points]
+    unknown = np.flatnonzero(np.isinf(most))
+    most[unknown] = search.at_most(places[unknown])
+    found = search.closest(places, float(most.max()))
+    again = np.flatnonzero(np.abs(found.distance) > clear[points])
+    if len(again):
+        more = _search_around(b, places[again]).closest(places[again])
+        found.distance[again], found.corner[again] = more.distance, more.corner
+    return found
 
 
 def _outside(a: PosedSkin, low: Float64s, sides: Flood, chosen: Indices, group: Indices) -> Bools:
@@ -224,7 +214,7 @@ def _agree(distance: Float64s, group: Indices) -> Float64s:
 
 def _doubtful(
     distance: Float64s,
-    agreed: Float64s,
+    signed: Float64s,
     group: Indices,
     parts: tuple[Indices, Indices],
     num_parts: int,
@@ -232,16 +222,19 @@ def _doubtful(
 ) -> Indices:
     """One point of each group whose side is in doubt, where it makes a difference.
 
+    ``distance`` has signs by normals, ``signed`` one sign a group; then come the distances of other points.
+
     Where B's skin crosses itself, a point inside may be nearest to a sheet that lies inside too, and the sign
     by normals then says outside; or one outside to a sheet turned inside out. A group whose points disagree
     is in doubt. One that seems to be outside matters if a point of it does not touch, or would be the deepest
     of its part or of the part of B it is closest to.
     """
+    agreed = signed[: len(group)]
     matters = agreed > threshold
     for part in parts:
         deepest = np.full(num_parts + 1, np.inf)
-        np.minimum.at(deepest, part, agreed)
-        matters |= -agreed < deepest[part]
+        np.minimum.at(deepest, part, signed)
+        matters |= -agreed < deepest[part[: len(group)]]
     matters = np.where(agreed < 0, distance > 0, matters)
     return one_of_each(group, matters & (group >= 0))
 
@@ -250,9 +243,9 @@ def _far_or_enclosed(a: PosedSkin, b: PosedSkin, gap: Float64s) -> _Side:
     """A skin with no patch near B's is outside, unless B is so much larger that it holds all of A."""
     none = np.zeros(0, dtype=np.intp)
     if (a.low < b.low).any() or (a.high > b.high).any():
-        return _Side(none, np.zeros(0), none, gap)
+        return _Side(none, np.zeros(0), none, gap, none)
     found = _search_around(b, a.points).closest(a.points)
-    return _Side(np.arange(len(a.points)), found.distance, found.corner, gap)
+    return _Side(np.arange(len(a.points)), found.distance, found.corner, gap, none)
 
 
 def _search_around(skin: PosedSkin, points: Float64s) -> SkinSearch:
@@ -285,5 +278,6 @@ def _join(own: _Side, other: _Side, skin_map: SkinMap, threshold: float) -> Touc
     touched[shortest > threshold] = -1
     points = np.zeros(len(skin_map.ids), dtype=np.bool_)
     points[own.near[own.distance <= threshold]] = True
+    points[own.within] = True
     # Where an exact distance was asked for, it is no longer than the sampled bound.
     return Touch(np.minimum(shortest, own.gap), touched, points)

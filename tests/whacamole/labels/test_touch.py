@@ -184,7 +184,7 @@ def test_points_of_a_triangle_are_within_reach_of_a_corner(seed):
     skin = Toy(vertices, faces, one_part(vertices)).posed(
         vertices * [1, 1, 10.0 ** rng.uniform(-9, 1)] + rng.normal(scale=0.2, size=vertices.shape) * [1, 1, 0]
     )
-    reach = skin.corner_reach(np.arange(len(faces)))
+    reach = skin.corner_reach(skin.map.corner)
     weights = rng.dirichlet([0.7, 0.7, 0.7], size=4000)
     for triangle, bound in zip(skin.points[skin.map.faces], reach, strict=True):
         nearest = np.linalg.norm((weights @ triangle)[:, None] - triangle, axis=2).min(axis=1).max()
