@@ -61,9 +61,6 @@ def main() -> None:
     """Run the command line; an error a user can mend is one line, not a traceback."""
     try:
         app()
-    except KeyboardInterrupt:
-        typer.echo("stopped; finished sequences are kept, the same command goes on", err=True)
-        sys.exit(130)
     except Exception as error:
         if not _is_ours(error):
             raise

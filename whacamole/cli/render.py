@@ -219,6 +219,10 @@ def render(
         ),
         check_disk=disk_check,
     )
-    result = produce(asked, out, means, dry_run=dry_run, quiet=quiet or json_output, search=search)
+    try:
+        result = produce(asked, out, means, dry_run=dry_run, quiet=quiet or json_output, search=search)
+    except KeyboardInterrupt:  # told here, as typer ends the program without a word
+        typer.echo("stopped; finished sequences are kept, the same command goes on", err=True)
+        raise typer.Exit(130) from None
     result.report(quiet=quiet, as_json=json_output, profile=profile)
     raise typer.Exit(0 if result.complete else 1)

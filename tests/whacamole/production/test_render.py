@@ -163,6 +163,19 @@ def test_an_interrupted_run_leaves_no_process(one_walk: Path, tmp_path: Path) ->
     assert not _processes_naming(str(tmp_path))
 
 
+def test_ctrl_c_says_that_the_same_command_goes_on(one_walk: Path, tmp_path: Path) -> None:
+    command = (sys.executable, "-m", "whacamole", "render", "--motions", one_walk, *SMALL, "--frames", "30")
+    process = subprocess.Popen(
+        [*map(str, command), "--out", str(tmp_path / "data")], stderr=subprocess.PIPE, text=True
+    )
+    while process.poll() is None and not (tmp_path / "data" / "recipe.json").exists():
+        time.sleep(0.05)
+    process.send_signal(signal.SIGINT)
+    _, told = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert told.splitlines()[-1] == "stopped; finished sequences are kept, the same command goes on"
+
+
 def _processes_naming(text: str) -> list[str]:
     found = []
     for entry in Path("/proc").iterdir():
