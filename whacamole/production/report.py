@@ -151,7 +151,10 @@ class Production:
         if any(order.people < fewest for order in few):
             causes.append("--motions holds too few other motions of one person that last as long")
         if any(self.fewer_people[order.sequence_id] < order.people for order in few):
-            causes.append("no free ground was found for all, try a longer list of --stages or fewer --frames")
+            causes.append(
+                "no free ground was found for all, try a longer list of --stages or fewer --frames "
+                "(or a motion is damaged)"
+            )
         return (
             f"{len(few)} of {len(orders)} sequences have fewer than {fewest} people, "
             f"{few[0].sequence_id} has {self.fewer_people[few[0].sequence_id]}: {'; '.join(causes)}"

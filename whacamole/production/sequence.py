@@ -1,5 +1,6 @@
 """Making one sequence: read, stage, plan, render, label, finish. Complete in the dataset, or absent."""
 
+import contextlib
 import shutil
 from collections.abc import Callable
 from functools import partial
@@ -16,9 +17,9 @@ from render_jobs.standby import Standby
 from whacamole.body import BodyModel
 from whacamole.dataset import DatasetLayout, Sequence, SequenceLayout, write_summary
 from whacamole.dataset.video import write_video
-from whacamole.errors import TakeError
+from whacamole.errors import MotionError, TakeError
 from whacamole.labels.camera import Film
-from whacamole.motion import read_motion
+from whacamole.motion import Motion, MotionFile, read_motion
 from whacamole.production.bodies import body_of
 from whacamole.production.filming import camera_neighbours, film_of, plan_camera
 from whacamole.production.labelling import write_labels
@@ -149,6 +150,15 @@ def _to_video(sequence: SequenceLayout, frames: int, fps: float) -> None:
     shutil.rmtree(sequence.folder / "rgb")
 
 
+def _readable(files: tuple[MotionFile, ...], fps: float) -> list[Motion]:
+    """Read the motions of further people; a damaged one costs one person, not the sequence."""
+    motions = []
+    for file in files:
+        with contextlib.suppress(MotionError):  # told where it would have a sequence of its own
+            motions.append(read_motion(file, fps=fps))
+    return motions
+
+
 def take_of(order: SequenceOrder, *, textures: Path | None) -> Take:
     """Read the motions of an order and stage them.
 
@@ -156,7 +166,7 @@ def take_of(order: SequenceOrder, *, textures: Path | None) -> Take:
         textures: folder for textures; None stages for planning alone.
 
     Raises:
-        MotionError, TakeError: a motion cannot be used; the message names its file.
+        MotionError, TakeError: the motion cannot be used; the message names its file.
         BodyModelError: the recipe's body model cannot be used.
     """
     recipe = order.recipe
@@ -170,7 +180,7 @@ def take_of(order: SequenceOrder, *, textures: Path | None) -> Take:
             shot_index=order.shot_index,
             textures=textures,
             places=places_of(recipe, DatasetLayout(order.root)),
-            companions=[read_motion(file, fps=recipe.fps) for file in order.companions],
+            companions=_readable(order.companions, recipe.fps),
             subdivision=SUBDIVISION[recipe.quality],
             uv_textures=recipe.textures,
         )

@@ -67,7 +67,7 @@ class Status:
         for name, pulse in self.begun.items():
             lines.append(f"  {name}: {self._how_far(pulse)}")
             lines += [f"    failed attempt: {error}" for error in self.failed_attempts.get(name, ())]
-        lines += [f"  {name}: failed: {error}" for name, error in self.failed.items()]
+        lines += [f"  failed: {error}" for error in self.failed.values()]  # each names its sequence
         return "\n".join(lines)
 
     def _how_far(self, pulse: Pulse) -> str:

@@ -180,7 +180,7 @@ def test_status_tells_who_is_at_what_and_who_has_died(tmp_path: Path) -> None:
     assert f"{first}: rendering, 4 of 10 frames, on " in text
     assert "failed attempt: SIGABRT" in text
     assert f"{second}: rendering, 4 of 10 frames; nobody is at it" in text
-    assert f"{third}: failed: {third}: no camera" in text
+    assert f"failed: {third}: no camera" in text
     assert json.loads(json.dumps(state.as_dict()))["begun"][first]["pid"] == os.getpid()
 
 

@@ -104,3 +104,19 @@ def test_a_crowd_that_the_motions_cannot_fill_is_told_in_one_line(folder: Path, 
         "1 of 2 sequences have fewer than 3 people, walk_stageii-00 has 1: --motions holds"
     )
     assert json.loads(run_cli(*asked, "--json").stdout)["fewer_people"] == {"walk_stageii-00": 1}
+
+
+def test_a_damaged_motion_of_a_further_person_costs_that_person_alone(tmp_path: Path) -> None:
+    motions = tmp_path / "motions"
+    motions.mkdir()
+    whole = write_amass(motions / "walk_stageii.npz", frames=60)
+    with np.load(whole) as arrays:
+        damaged = dict(arrays)
+    damaged["poses"] = damaged["poses"].copy()
+    damaged["poses"][7] = np.nan
+    np.savez(motions / "zz_stageii.npz", **damaged)
+    _, planned = make_plans(load_recipe(None, {"motions": motions, "people": 2}), tmp_path / "plans")
+    walk, broken = sorted(planned, key=lambda entry: entry.sequence_id)
+    assert walk.ok
+    assert not walk.error
+    assert "'poses' is not finite" in broken.error
