@@ -1,7 +1,10 @@
 """The command line: one file a command, each thin, nothing heavy imported before it is needed."""
 
+import errno
+import os
 import sys
 from collections.abc import Callable
+from pathlib import Path
 from typing import Annotated, Any
 
 import typer
@@ -28,6 +31,8 @@ __all__ = ["app", "main"]
 COMMANDS: tuple[Callable[..., Any], ...] = (
     render, plan, check, status, stats, view, preview, page, split, export, evaluate, body, recipe, doctor,
 )  # fmt: skip
+
+_CLOSED = (errno.EACCES, errno.EPERM, errno.EROFS)
 
 app = typer.Typer(
     name="whacamole",
@@ -80,6 +85,15 @@ def _is_ours(error: Exception) -> bool:
 
 
 def _told(error: Exception) -> str:
+    if isinstance(error, OSError) and error.errno in _CLOSED:
+        path = Path(error.filename)
+        if path.exists() and not os.access(path, os.R_OK):
+            return f"{path}: not readable ({error.strerror}); ask its owner for the right to read it"
+        place = path if path.is_dir() else path.parent
+        return (
+            f"{place}: nothing can be written there ({error.strerror}); name another place where the command "
+            "takes one, or work on a copy"
+        )
     if isinstance(error, OSError) and error.filename is not None:
         return f"{error.filename}: {error.strerror}; check the path, its rights and the disk"
     return str(error)

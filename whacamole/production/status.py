@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from whacamole.dataset import DatasetLayout, read_json
-from whacamole.errors import DatasetError
+from whacamole.errors import DatasetError, MotionError
 from whacamole.production.place import attempts_so_far
 from whacamole.production.progress import STEPS, clock
 from whacamole.production.pulse import Pulse, RunRecord, live_runs
@@ -22,7 +22,7 @@ class Status:
 
     Attributes:
         dataset: its folder.
-        asked: sequences that its recipe asks for.
+        asked: sequences that its recipe asks for; None where its motions are not here to tell.
         finished: how many of them are there.
         runs: every `whacamole render` at work on it, on whatever machine.
         begun: sequence id → how far it is, of those not finished.
@@ -31,7 +31,7 @@ class Status:
     """
 
     dataset: str
-    asked: int
+    asked: int | None
     finished: int
     runs: tuple[RunRecord, ...]
     begun: dict[str, Pulse]
@@ -54,7 +54,10 @@ class Status:
 
     def as_text(self) -> str:
         """Return the state as lines for a terminal."""
-        head = f"{self.dataset}: {self.finished} of {self.asked} sequences finished"
+        of = "" if self.asked is None else f"of {self.asked} "
+        head = f"{self.dataset}: {self.finished} {of}sequences finished"
+        if self.asked is None:
+            head += " (the motions of its recipe are not here: how many are asked for cannot be told)"
         if self.runs:
             head += f", {self.frames_s:.2f} frames/s"
         if self.left_s is not None:
@@ -90,7 +93,11 @@ def status_of(root: Path) -> Status:
     layout = DatasetLayout(root.resolve())
     if not (layout.root / "recipe.json").exists():
         raise DatasetError(f"{root}: no dataset made by `whacamole render` (recipe.json is not there)")
-    worklist = work_of(Recipe.model_validate(read_json(layout.root / "recipe.json")), layout.root)
+    runs = tuple(live_runs(layout))
+    try:
+        worklist = work_of(Recipe.model_validate(read_json(layout.root / "recipe.json")), layout.root)
+    except MotionError:  # a dataset that has travelled, or a relative path seen from elsewhere
+        return Status(str(layout.root), None, len(layout.finished()), runs, {}, {}, {})
     begun: dict[str, Pulse] = {}
     failed: dict[str, str] = {}
     attempts: dict[str, list[str]] = {}
@@ -102,5 +109,4 @@ def status_of(root: Path) -> Status:
             begun[order.sequence_id] = pulse
             attempts[order.sequence_id] = [str(made["error"]) for made in attempts_so_far(work)]
     done = len(worklist.orders) - len(worklist.open)
-    runs = tuple(live_runs(layout))
     return Status(str(layout.root), len(worklist.orders), done, runs, begun, failed, attempts)

@@ -77,8 +77,11 @@ def make_previews(
             progress.update(task, description=sequence.id)
             try:
                 made.files += _make(sequence, data, wanted, lambda: progress.advance(task))
-            except (WhacamoleError, OSError) as error:
+            except WhacamoleError as error:
                 made.failed[sequence.id] = str(error)
+            except OSError as error:
+                reason = f"{error.filename}: {error.strerror}" if error.filename else str(error)
+                made.failed[sequence.id] = f"{reason}; --out names another folder"
     return made
 
 
