@@ -2,9 +2,12 @@
 
 import json
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
+
+if TYPE_CHECKING:
+    from whacamole.dataset import Dataset
 
 __all__ = ["split"]
 
@@ -29,6 +32,7 @@ def split(
     data = open_dataset(dataset)
     data.require_whole()
     sides = split_dataset(data.layout, SplitRule(by, test_fraction, seed))
+    _count_anew(data)
     if json_output:
         typer.echo(json.dumps(sides, indent=1))
         return
@@ -37,3 +41,19 @@ def split(
             typer.echo(f"{name}: {len(ids)} sequences")
     if 0.0 < test_fraction < 1.0 and not all(sides.values()):
         typer.echo("one side is empty, there are few groups to draw from; another --seed may help", err=True)
+
+
+def _count_anew(data: "Dataset") -> None:
+    """Card and page name the splits: make those again that are there."""
+    from whacamole.dataset.card import write_card
+    from whacamole.dataset.statistics import collect
+    from whacamole.viewing.page import write_page
+    from whacamole.viewing.places import Places
+
+    card, page = data.layout.card.is_file(), Places(data.layout.root).page.is_file()
+    if card or page:
+        numbers = collect(data)
+        if card:
+            write_card(data.layout, numbers)
+        if page:
+            write_page(data.layout, numbers)

@@ -33,9 +33,7 @@ def write_card(layout: DatasetLayout, numbers: Statistics | None = None) -> None
         DatasetError: a file of the dataset is missing or broken.
     """
     dataset = open_dataset(layout.root)
-    write_text(
-        layout.root / "README.md", card_text(collect(dataset) if numbers is None else numbers, dataset.index)
-    )
+    write_text(layout.card, card_text(collect(dataset) if numbers is None else numbers, dataset.index))
 
 
 def statistics_text(numbers: Statistics) -> str:
@@ -111,12 +109,8 @@ def _plot(spread: Spread) -> str:
     total, most = sum(spread.counts), max(spread.counts)
     if not total:
         return "none"
-    filled = [number for number, count in enumerate(spread.counts) if count]
     lines = []
-    for number in range(filled[0], filled[-1] + 1):  # no rows of nothing before and after
-        count = spread.counts[number]
-        above = spread.edges[number + 1 : number + 2]
-        label = f"{spread.edges[number]:g} to {above[0]:g}" if above else f"{spread.edges[number]:g} and more"
+    for label, count in spread.rows():
         bar = "█" * round(BAR * count / most) or ("▏" if count else "")
         lines.append(f"{label:>14}  {count / total:6.1%}  {bar}".rstrip())
     text = "\n".join(lines)

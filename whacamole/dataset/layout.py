@@ -65,6 +65,10 @@ class DatasetLayout:
         return self.root / "dataset.json"
 
     @property
+    def card(self) -> Path:
+        return self.root / "README.md"
+
+    @property
     def splits(self) -> Path:
         return self.root / "splits"
 

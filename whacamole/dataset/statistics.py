@@ -6,6 +6,7 @@ An instance is one person in one image, as in Table 1 of the WHAC paper; only pe
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, field
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -49,6 +50,13 @@ class Spread:
     def __post_init__(self) -> None:
         """Begin with empty bins."""
         self.counts = self.counts or [0] * len(self.edges)
+
+    def rows(self) -> list[tuple[str, int]]:
+        """The bins in words with their counts, without those of nothing before and after."""
+        filled = [number for number, count in enumerate(self.counts) if count]
+        names = [f"{low:g} to {high:g}" for low, high in pairwise(self.edges)]
+        names.append(f"{self.edges[-1]:g} and more")
+        return list(zip(names, self.counts, strict=True))[filled[0] : filled[-1] + 1] if filled else []
 
     def add(self, values: NDArray[Any]) -> None:
         """Count values of any shape."""

@@ -1,4 +1,4 @@
-"""The statistics of a dataset as HTML: tables of counts with bars."""
+"""The statistics of a dataset as HTML: tables of counts and shares with bars."""
 
 from collections.abc import Mapping
 from html import escape
@@ -20,7 +20,7 @@ def numbers_html(numbers: Statistics) -> str:
         "Genders": numbers.genders, "Image sizes": numbers.sizes,
     }  # fmt: skip
     tables = [_table(title, list(rows.items())) for title, rows in counts.items() if rows]
-    tables += [_table(TITLES[name], _bins(spread), cut=False) for name, spread in numbers.spreads.items()]
+    tables += [_spread(TITLES[name], spread) for name, spread in numbers.spreads.items() if spread.rows()]
     joints = ", ".join(f"{share:.1%} {escape(name)}" for name, share in numbers.joints.items())
     shares = (
         f"<p>Of the instances {numbers.ground_contact:.1%} touch the ground and {numbers.person_contact:.1%} "
@@ -30,24 +30,29 @@ def numbers_html(numbers: Statistics) -> str:
     return f"{shares}<div class=tables>{''.join(tables)}</div>"
 
 
-def _bins(spread: Spread) -> list[tuple[str, int]]:
-    rows = []
-    for number, count in enumerate(spread.counts):
-        above = spread.edges[number + 1 : number + 2]
-        low = f"{spread.edges[number]:g}"
-        rows.append((f"{low} to {above[0]:g}" if above else f"{low} and more", count))
-    return rows
+def _spread(title: str, spread: Spread) -> str:
+    """How a number is spread over the instances, in percent of them."""
+    rows = spread.rows()
+    total = sum(count for _, count in rows)
+    told = f"least {spread.low:.3g}, mean {spread.mean:.3g}, greatest {spread.high:.3g}"
+    return _framed(title, [(name, f"{count / total:.1%}", count) for name, count in rows], told)
 
 
-def _table(title: str, rows: list[tuple[str, int]], *, cut: bool = True) -> str:
-    shown = rows[:MOST] if cut else rows
+def _table(title: str, rows: list[tuple[str, int]]) -> str:
+    shown = rows[:MOST]
     rest = sum(count for _, count in rows[len(shown) :])
     if rest:
         shown = [*shown, (f"{len(rows) - len(shown)} others", rest)]
-    total = max((count for _, count in shown), default=0) or 1
+    return _framed(title, [(name, f"{count:,}", count) for name, count in shown])
+
+
+def _framed(title: str, rows: list[tuple[str, str, int]], told: str = "") -> str:
+    """A table of names, numbers in words and bars as long as the numbers."""
+    most = max((count for _, _, count in rows), default=0) or 1
     body = "".join(
-        f"<tr><th>{escape(name)}</th><td>{count:,}</td>"
-        f"<td><meter min=0 max={total} value={count}></meter></td></tr>"
-        for name, count in shown
+        f"<tr><th>{escape(name)}</th><td>{text}</td>"
+        f'<td><svg class=bar><rect width="{100 * count / most:.1f}%" height="100%"/></svg></td></tr>'
+        for name, text, count in rows
     )
-    return f"<table><caption>{escape(title)}</caption>{body}</table>"
+    last = f"<tr><td class=told colspan=3>{escape(told)}</td></tr>" if told else ""
+    return f"<table><caption>{escape(title)}</caption>{body}{last}</table>"
