@@ -74,8 +74,8 @@ AFRO_SHARE: Final[dict[Origin, float]] = {"african": 3.0, "asian": 0.0, "caucasi
 """How often tight curls are chosen, against 1 for every other head of hair."""
 
 HAT_SHARE: Final = 0.12
-UNDER_HAT: Final = ("hair_cropped",)
-"""Hair that fits under a hat; others come without."""
+UNDER_HAT: Final = ("hair_cropped", "hair_short")
+"""Hair that is worn with a hat, in place of longer hair."""
 
 SUIT: Final = ("suit_jacket", "suit_trousers", "shoes_dress")
 """Worn together or not at all."""
@@ -264,9 +264,10 @@ def _head(
     wears_hat = gender == "male" and rng.random() < HAT_SHARE
     brows = _pick(rng, wardrobe.of_slot("brows", gender)).name
     lashes = _pick(rng, wardrobe.of_slot("lashes", gender)).name
-    hair_shown = not bald and (not wears_hat or hair in UNDER_HAT)
+    if wears_hat and hair not in UNDER_HAT:
+        hair = UNDER_HAT[heads.index(hair) % len(UNDER_HAT)]
     return (
-        *((Worn(hair),) if hair_shown else ()),
+        *(() if bald else (Worn(hair),)),
         *((hat,) if wears_hat else ()),
         Worn(brows),
         Worn(lashes),

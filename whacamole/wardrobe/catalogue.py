@@ -77,6 +77,11 @@ class ItemGeometry:
     hidden: npt.NDArray[np.bool_]
     under: npt.NDArray[np.bool_]
 
+    @property
+    def corners(self) -> npt.NDArray[np.int32]:
+        """(F, 4) vertices of the faces; a triangle has its last twice."""
+        return np.where(self.faces < 0, self.faces[:, 2:3], self.faces)
+
 
 @dataclass(frozen=True)
 class SkinTexture:

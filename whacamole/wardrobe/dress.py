@@ -173,7 +173,7 @@ def _item_meshes(
 ) -> Iterator[Mesh]:
     for worn, vertices, left_out in zip(member.worn, clothes, unseen, strict=True):
         item, geometry = wardrobe.items[worn.item], wardrobe.geometry(worn.item)
-        seen = ~left_out[geometry.faces].all(axis=1)
+        seen = ~left_out[geometry.corners].all(axis=1)
         material = Material(
             base_color_texture=item_texture(wardrobe, item, worn, member.hair_colour, folder),
             alpha_mode="clip" if item.see_through else "opaque",

@@ -26,6 +26,15 @@ IndexArray = npt.NDArray[np.int64]
 OVER: Final[tuple[tuple[Slot, Slot], ...]] = (("top", "bottom"), ("bottom", "shoes"))
 """Which slot is worn over which, from the outermost in."""
 
+BRIM: Final = 0.012
+"""Hair that reaches this far above the brim of a hat is left out [m] …"""
+
+NEAR_BRIM: Final = 0.035
+"""… the brim being the lowest of the hat within this horizontal distance [m] …"""
+
+CROWN: Final = 0.05
+"""… and so is all that reaches this far above the lowest of the hat [m]."""
+
 AROUND: Final = 0.07
 """The hem above a point is the lowest of the outer item within this horizontal distance [m]."""
 
@@ -85,6 +94,9 @@ def wear_all(
         hidden[inner][:] |= hold.hidden
         if len(hold.vertices):
             _hang(hold, rest[outer], rest[inner], posed[outer], posed[inner])
+    if "hat" in places and "hair" in places:
+        hat, hair = places["hat"], places["hair"]
+        hidden[hair][:] = _under_hat(wardrobe, items[hat].name, items[hair].name)
     return hidden
 
 
@@ -108,9 +120,8 @@ def _hold(wardrobe: Catalogue, outer: str, inner: str) -> _Hold:
     over, under = (item_layer(wardrobe, name).template.astype(np.float64) for name in (outer, inner))
     above_hem = under[:, 1] - _hem_height(over, under)
     hidden = above_hem > OVERLAP
-    faces = wardrobe.geometry(inner).faces
+    faces = wardrobe.geometry(inner).corners
     kept = np.unique(faces[~hidden[faces].all(axis=1)])
-    kept = kept[kept >= 0]
     hooks = hang(wardrobe.geometry(outer).faces, over, under[kept])
     point, axes = (values[0] for values in hooks.frames(over[None].astype(np.float32)))
     place = np.einsum("mij,mj->mi", axes, under[kept] - point) / np.linalg.norm(axes, axis=-1)
@@ -123,8 +134,20 @@ def _hold(wardrobe: Catalogue, outer: str, inner: str) -> _Hold:
     return _Hold(kept[held], share[held, None].astype(np.float32), hooks.of(held), hidden)
 
 
-def _hem_height(over: FloatArray, under: FloatArray) -> FloatArray:
+@lru_cache(maxsize=64)
+def _under_hat(wardrobe: Catalogue, hat: str, hair: str) -> BoolArray:
+    """The hair (n,) above the brim, and what of it reaches above."""
+    over, under = (item_layer(wardrobe, name).template.astype(np.float64) for name in (hat, hair))
+    brim = np.minimum(_hem_height(over, under, NEAR_BRIM) + BRIM, over[:, 1].min() + CROWN)
+    above = under[:, 1] > brim
+    faces = wardrobe.geometry(hair).corners
+    hidden = above.copy()
+    hidden[faces[above[faces].any(axis=1)]] = True
+    return hidden
+
+
+def _hem_height(over: FloatArray, under: FloatArray, around: float = AROUND) -> FloatArray:
     """(n,) height of the lowest outer vertex near each inner one; infinite where none is near."""
     tree = scipy.spatial.cKDTree(over[:, [0, 2]])
-    near = tree.query_ball_point(under[:, [0, 2]], AROUND)
+    near = tree.query_ball_point(under[:, [0, 2]], around)
     return np.array([over[index, 1].min() if index else np.inf for index in near])

@@ -5,6 +5,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from whacamole.body import JOINT_INDEX, BodyParams, vertex_normals
+from whacamole.wardrobe.cast import UNDER_HAT, cast
 from whacamole.wardrobe.catalogue import catalogue
 from whacamole.wardrobe.hooks import hang
 from whacamole.wardrobe.layer import item_layer
@@ -142,3 +143,29 @@ def test_skin_below_a_hem_is_pushed_in_where_a_bend_brings_it_out(body, name):
         for skin in (before, after)
     ]
     assert out[1] <= min(out[0], 0.05 * close.sum())
+
+
+@pytest.mark.parametrize("hat", ["fedora", "fedora_cocked"])
+@pytest.mark.parametrize("hair", UNDER_HAT)
+def test_hair_shows_below_the_brim_and_not_through_the_hat(body, hat, hair):
+    wardrobe, names = catalogue(), (hat, hair)
+    rest = [item_layer(wardrobe, name).rest(np.zeros(10)) for name in names]
+    items = [wardrobe.items[name] for name in names]
+    hidden = wear_all(wardrobe, items, rest, [vertices[None].copy() for vertices in rest])[1]
+    faces = wardrobe.geometry(hair).corners
+    kept = ~hidden[faces].all(axis=1)
+    assert 0.1 < kept.mean() < 0.9
+    shown = rest[1][np.unique(faces[kept])]
+    crown = rest[0][:, 1].max()
+    assert (shown[:, 1] < crown - 0.05).all()
+    through, distance = outside(shown, rest[0], wardrobe.geometry(hat).faces)
+    above_brim = shown[:, 1] > np.quantile(rest[0][:, 1], 0.5)
+    assert ((through > 0.002) & (distance < 0.02) & above_brim).mean() < 0.01
+
+
+def test_who_wears_a_hat_wears_short_hair_or_none():
+    hats = [m for m in map(cast, range(120)) if any(w.item.startswith("fedora") for w in m.worn)]
+    assert len(hats) > 3
+    hair = [[w.item for w in m.worn if w.item.startswith("hair")] for m in hats]
+    assert sum(bool(h) for h in hair) > len(hats) / 2
+    assert all(item in UNDER_HAT for h in hair for item in h)
