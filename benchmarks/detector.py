@@ -61,11 +61,13 @@ class Shown:
         groups: those this counts in, by kind.
         found: a detection is centred on the person.
         error: distances of the points in the image [torsos], infinite where none were read.
+        points: what each of them is, and whether it can be seen.
     """
 
     groups: dict[str, str]
     found: bool
     error: tuple[float, ...]
+    points: tuple[tuple[str, str], ...]
 
 
 def orders(options: argparse.Namespace) -> Iterator[tuple[str, SequenceOrder]]:
@@ -96,7 +98,8 @@ def show(order: SequenceOrder, stage: str, pose: BlazePose, failures: Path) -> I
         regions = pose.find(image)
         readings = [reading for region in regions if (reading := read(pose, image, region)) is not None]
         for number, performer in enumerate(take.performers):
-            inside = people["joint_visibility"][number, frame, joints] > 0
+            visibility = people["joint_visibility"][number, frame, joints]
+            inside = visibility > 0
             if people["visible_fraction"][number, frame] <= SEEN or not inside.any():
                 continue
             labels = people["joints_image"][number, frame, joints].astype(np.float64)
@@ -117,7 +120,12 @@ def show(order: SequenceOrder, stage: str, pose: BlazePose, failures: Path) -> I
                 "framing": framing(inside),
                 **geometry(people["joints_world"][number, frame], camera["T_world_camera"][frame, :3, 3]),
             }
-            yield Shown(groups, found, tuple(error) if found else ())
+            points = tuple(
+                (name.split("_")[1], "visible" if seen == 2 else "hidden")
+                for name, seen in zip(LANDMARKS, visibility, strict=True)
+                if seen > 0
+            )
+            yield Shown(groups, found, tuple(error) if found else (), points if found else ())
 
 
 def read(pose: BlazePose, image: NDArray[np.uint8], region: Region) -> Reading | None:
@@ -197,6 +205,14 @@ def table(shown: list[Shown]) -> None:
         found = 100 * np.mean([one.found for one in members])
         near, middle = (100 * np.mean(errors <= NEAR), np.median(errors)) if len(errors) else (np.nan, np.nan)
         print(f"| {name} | {len(members)} | {found:.1f} | {near:.1f} | {middle:.3f} |")
+    print("\n| points | number | near % |\n|---|---|---|")
+    points: dict[str, list[bool]] = defaultdict(list)
+    for one in shown:
+        for error, kinds in zip(one.error, one.points, strict=True):
+            for kind in kinds:
+                points[kind].append(error <= NEAR)
+    for kind, hits in sorted(points.items()):
+        print(f"| {kind} | {len(hits)} | {100 * np.mean(hits):.1f} |")
 
 
 def main() -> None:

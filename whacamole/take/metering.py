@@ -21,7 +21,7 @@ from whacamole.wardrobe import skin_tone
 
 __all__ = ["face_irradiance", "face_stops", "metered"]
 
-FLOOR = 0.07
+FLOOR = 0.08
 """Light from a face, white paper in full light being 1, under which it is too dark to read."""
 
 CEILING = 0.7
