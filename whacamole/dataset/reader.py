@@ -202,7 +202,8 @@ class Dataset:
         """
         sequence_id = self.ids[key] if isinstance(key, int) else key
         if sequence_id not in self.ids:
-            raise DatasetError(f"{self.layout.root}: no sequence {key!r}; see `whacamole status`")
+            some = ", ".join((*self.ids[:5], *(["…"] if len(self.ids) > 5 else ())))
+            raise DatasetError(f"{self.layout.root}: no sequence {key!r}; there are {some or 'none'}")
         sequence = self.layout.sequence(sequence_id)
         return Sequence(sequence_id, sequence, read_summary(sequence))
 

@@ -74,8 +74,7 @@ def layers_named(text: str, sequence: Sequence) -> tuple[str, ...]:
         made = sequence.facts["passes"]
         if name in ("depth", "normal", "flow", "mask") and name not in made:
             raise DatasetError(
-                f"{sequence.id}: --layers {name}: not rendered, only {', '.join(made)}; "
-                f"render with --passes …,{name}"
+                f"--layers {name}: not rendered, only {', '.join(made)}; render with --passes …,{name}"
             )
     if not names:
         raise DatasetError(f"--layers: empty; choose of {', '.join(LAYERS)}")

@@ -66,12 +66,14 @@ def make_previews(
         quiet: show no progress.
 
     Raises:
-        DatasetError: there is no dataset, or no such sequence.
+        DatasetError: there is no dataset, no such sequence or no such layer.
     """
     data = open_dataset(dataset)
     chosen = [data[name] for name in ids] if ids else _first(data, limit)
+    layers_named(wanted.layers, chosen[0])  # a dataset has the same passes throughout: told once
     made = Made()
-    with Progress(console=Console(stderr=True), transient=True, disable=quiet) as progress:
+    console = Console(stderr=True)
+    with Progress(console=console, transient=True, disable=quiet or not console.is_terminal) as progress:
         task = progress.add_task("previews", total=sum(len(sequence) for sequence in chosen))
         for sequence in chosen:
             progress.update(task, description=sequence.id)

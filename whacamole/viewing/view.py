@@ -60,7 +60,8 @@ def _scene(request: Request, server: Any, sequence: Sequence, look: Look, *, who
 
 
 def _progress(quiet: bool) -> Progress:
-    return Progress(console=Console(stderr=True), transient=True, disable=quiet)
+    console = Console(stderr=True)
+    return Progress(console=console, transient=True, disable=quiet or not console.is_terminal)
 
 
 def save_view(request: Request, path: Path, *, full: bool = False, quiet: bool = False) -> int:
