@@ -4,6 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+import numpy as np
+
+from render_jobs.passes import PASSES
+
 BYTES_PER_PIXEL: dict[str, float] = {
     "jpg": 0.50,
     "png": 1.50,
@@ -13,7 +17,7 @@ BYTES_PER_PIXEL: dict[str, float] = {
     "normal": 1.44,
     "flow": 6.12,
 }
-"""Of each pass; RGB by its format. Noise that a recipe adds makes RGB larger."""
+"""Of each pass that was measured; RGB by its format. Noise that a recipe adds makes RGB larger."""
 
 
 def frame_bytes(passes: Iterable[str], image_format: str, width: int, height: int) -> float:
@@ -25,4 +29,11 @@ def frame_bytes(passes: Iterable[str], image_format: str, width: int, height: in
         width, height: in pixels.
     """
     names = (image_format if name == "rgb" else name for name in passes)
-    return sum(BYTES_PER_PIXEL[name] for name in names) * width * height
+    return sum(_bytes_per_pixel(name) for name in names) * width * height
+
+
+def _bytes_per_pixel(name: str) -> float:
+    """What was measured; of a pass that was not, what its values take uncompressed."""
+    if name in BYTES_PER_PIXEL:
+        return BYTES_PER_PIXEL[name]
+    return float(np.dtype(PASSES[name].dtype).itemsize * len(PASSES[name].channels))

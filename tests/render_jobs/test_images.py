@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 
 from render_jobs import PASSES
+from render_jobs.budget import frame_bytes
 from render_jobs.images import is_complete, label_writer, publish_frame, read_exr, write_exr, write_mask
 from render_jobs.optics import flow_at_infinity, pixel_rays
+from render_jobs.passes import RenderPass
 from render_truth import camera, read_picture
 
 
@@ -66,3 +68,9 @@ def test_what_ends_up_behind_the_camera_has_no_flow() -> None:
     path = camera([[0, 0, 1], [0, 0, 1]], [[0, 5, 1], [0, -5, 1]], [80.0] * 2, [[48.0, 32.0]] * 2)
     flow = flow_at_infinity(*path.K, *path.T_world_camera, path.width, path.height)
     assert np.isnan(flow).all()
+
+
+def test_a_pass_that_was_not_measured_is_counted_by_its_values(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(PASSES, "new", RenderPass("new", "Two halves.", "1", "float16", ("A", "B"), "exr"))
+    measured = frame_bytes(("rgb", "mask", "depth"), "jpg", 10, 20)
+    assert frame_bytes(("rgb", "mask", "depth", "new"), "jpg", 10, 20) == pytest.approx(measured + 800)
