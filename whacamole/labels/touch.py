@@ -108,6 +108,9 @@ def _one_way(a: PosedSkin, b: PosedSkin, apart: Float64s, gap: Float64s, thresho
     clear = np.where(theirs, np.inf, apart).min(axis=1)
     search = SkinSearch(b, np.flatnonzero(theirs))
     bounds = bound(a, search, mine, clear, need, threshold)
+    gap = np.append(gap, np.inf)
+    np.minimum.at(gap, part, bounds.high)
+    gap = gap[:-1]
     cell_low = apart.min(axis=1)[a.map.cell_patch]
     cell_low[bounds.cells] = bounds.cell_low
     close = bounds.close
