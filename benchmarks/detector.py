@@ -44,9 +44,6 @@ LANDMARKS: Final = {
 }  # fmt: skip
 SKINS: Final = ((0.33, "light"), (0.66, "medium"), (1.01, "dark"))
 
-REREADS: Final = 4
-"""A person is read again at most so often."""
-
 SETTLED: Final = 0.02
 """A region that moves and grows by less, in its sides, has settled."""
 
@@ -87,7 +84,7 @@ def orders(options: argparse.Namespace) -> Iterator[tuple[str, SequenceOrder]]:
             yield from ((stage, order) for order in done.orders if order.sequence_id in done.finished)
 
 
-def show(order: SequenceOrder, stage: str, pose: BlazePose, failures: Path) -> Iterator[Shown]:
+def show(order: SequenceOrder, stage: str, pose: BlazePose, rereads: int, failures: Path) -> Iterator[Shown]:
     """The people of a sequence that can be seen well enough, as the detector finds them."""
     take = take_of(order, textures=None)
     sequence = open_dataset(order.root)[order.sequence_id]
@@ -96,7 +93,9 @@ def show(order: SequenceOrder, stage: str, pose: BlazePose, failures: Path) -> I
     for frame in range(len(camera["K"])):
         image = sequence.rgb(frame)
         regions = pose.find(image)
-        readings = [reading for region in regions if (reading := read(pose, image, region)) is not None]
+        readings = [
+            reading for region in regions if (reading := read(pose, image, region, rereads)) is not None
+        ]
         for number, performer in enumerate(take.performers):
             visibility = people["joint_visibility"][number, frame, joints]
             inside = visibility > 0
@@ -128,10 +127,10 @@ def show(order: SequenceOrder, stage: str, pose: BlazePose, failures: Path) -> I
             yield Shown(groups, found, tuple(error) if found else (), points if found else ())
 
 
-def read(pose: BlazePose, image: NDArray[np.uint8], region: Region) -> Reading | None:
-    """The person in a region, read until the region settles."""
+def read(pose: BlazePose, image: NDArray[np.uint8], region: Region, rereads: int) -> Reading | None:
+    """The person in a region, read again at most ``rereads`` times until the region settles."""
     reading = pose.read(image, region)
-    for _ in range(REREADS if reading is not None else 0):
+    for _ in range(rereads if reading is not None else 0):
         assert reading is not None
         after = reading.next
         if after.apart(region) < SETTLED and abs(after.side / region.side - 1.0) < SETTLED:
@@ -225,6 +224,7 @@ def main() -> None:
     parser.add_argument("--motions", nargs="+", default=list(MOTIONS))
     parser.add_argument("--shots-per-motion", type=int, default=1)
     parser.add_argument("--frames", type=int, default=2, help="frames a sequence")
+    parser.add_argument("--rereads", type=int, default=4, help="times a person is read again at most")
     parser.add_argument("--size", default="640x360")
     parser.add_argument("--quality", default="standard")
     parser.add_argument("--device", default="auto")
@@ -232,7 +232,7 @@ def main() -> None:
     shown: list[Shown] = []
     with BlazePose() as pose:
         for stage, order in orders(options):
-            shown += show(order, stage, pose, options.out / "failures")
+            shown += show(order, stage, pose, options.rereads, options.out / "failures")
             print(
                 f"{stage} {order.sequence_id}: {sum(one.found for one in shown)} of {len(shown)}", flush=True
             )

@@ -8,7 +8,7 @@ import trimesh
 
 from whacamole.dataset.files import sha256_of
 from whacamole.stage import STAGES, Stage
-from whacamole.stage.shapes import Solid, box, cylinder, ground_grid
+from whacamole.stage.shapes import Solid, box, cylinder, ground_grid, joined, strip
 from whacamole.stage.textures import TEXTURES
 
 WALK = np.stack([np.linspace(-4.0, 4.0, 80), np.sin(np.linspace(0.0, 3.0, 80))], axis=1)
@@ -37,10 +37,31 @@ def test_a_cylinder_has_the_area_of_its_prism() -> None:
     np.testing.assert_allclose(surface.face_normals[48:], [[0.0, 0.0, 1.0]] * 24, atol=1e-6)
 
 
-@pytest.mark.parametrize("solid", [box((0, 0, 0), (2.0, 3.0, 1.0)), ground_grid(5.0, 4)])
+TURNED = strip(np.array([3.0, 1.0]), np.array([0.6, 0.8]), 7.0, 2.0, 0.1)
+
+
+@pytest.mark.parametrize("solid", [box((0, 0, 0), (2.0, 3.0, 1.0)), ground_grid(5.0, 4), TURNED])
 def test_uv_are_in_metres(solid: Solid) -> None:
     edges = np.linalg.norm(np.diff(solid.vertices[solid.faces], axis=1), axis=2)
     np.testing.assert_allclose(np.linalg.norm(np.diff(solid.uv, axis=1), axis=2), edges, rtol=1e-5)
+
+
+def test_joined_solids_keep_their_volumes() -> None:
+    surface = _surface(joined([box((0, 0, 0), (2.0, 3.0, 1.0)), box((5, 0, 0), (1.0, 1.0, 1.0), yaw=0.4)]))
+    assert surface.is_watertight
+    assert surface.volume == pytest.approx(7.0, rel=1e-5)
+
+
+def test_nobody_treads_on_the_gravel_of_a_park(tmp_path: Path) -> None:
+    for seed in range(5):
+        (walkway,) = [mesh for mesh in _stage("park", seed, tmp_path).meshes if mesh.name == "walkway"]
+        start, end, _, side = walkway.vertices[:, :2].astype(np.float64)
+        along, across = end - start, side - start
+        reach = (WALK - start) @ np.stack([along / (along @ along), across / (across @ across)], axis=1)
+        inside = ((reach > 0.0) & (reach < 1.0)).all(axis=1)
+        gap = np.maximum(-reach[:, 1], reach[:, 1] - 1.0) * np.linalg.norm(across)
+        assert not inside.any()
+        assert gap.min() > 1.1
 
 
 @pytest.mark.parametrize("name", sorted(TEXTURES))
