@@ -9,6 +9,7 @@ import sys
 RUNS = (
     ("overhead", "--frames", "24"),
     ("quality", "--settings", "presets", "default", "peers"),
+    ("denoising",),
     ("side_by_side",),
     ("raster",),
     ("cost", "--size", "960x540"),
