@@ -26,6 +26,7 @@ class Bounds:
         cells: cells of the patches asked about.
         cell_low: distance of their centres, at least [m].
         need: ``(C + 1,)`` points of a part farther than this do not matter [m].
+        least: ``(C + 1,)`` how far the nearest point of a part is, at most [m]; inf where it is not known.
     """
 
     low: Float64s
@@ -34,6 +35,7 @@ class Bounds:
     cells: Indices
     cell_low: Float64s
     need: Float64s
+    least: Float64s
 
 
 def bound(
@@ -57,7 +59,9 @@ def bound(
     low[close] = np.maximum(low[close], np.minimum(own_low, clear[patch[close]]))
     high[close] = np.minimum(high[close], own_high)
     need = _lowered(need, part[close], own_high, threshold)
-    return Bounds(low, high, close, which, cell_low, need)
+    least = np.full(len(need), np.inf)
+    np.minimum.at(least, part[points], high[points])
+    return Bounds(low, high, close, which, cell_low, need, least)
 
 
 def _lowered(need: Float64s, part: Indices, high: Float64s, threshold: float) -> Float64s:

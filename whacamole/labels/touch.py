@@ -99,22 +99,15 @@ def _one_way(a: PosedSkin, b: PosedSkin, apart: Float64s, gap: Float64s, thresho
     """Exact signed distances of all points of A that touch B, lie in B, or decide the gap of their part."""
     part, patch = a.map.part, a.map.patches.patch
     need = np.maximum(np.minimum(np.append(gap, -np.inf), EXACT_WITHIN), threshold)
-    near = apart <= need[a.map.patches.part, None]
-    mine = np.flatnonzero(near.any(axis=1))
+    mine, theirs, clear = _patches_near(a, apart, need)
     if not len(mine):
         return _far_or_enclosed(a, b, gap)
-    # The others of B are farther than ``need`` from all of these, and from each as far as ``clear``.
-    theirs = (apart[mine] <= np.maximum(need[a.map.patches.part[mine], None], TIE_WITHIN)).any(axis=0)
-    clear = np.where(theirs, np.inf, apart).min(axis=1)
-    search = SkinSearch(b, np.flatnonzero(theirs))
+    search = SkinSearch(b, theirs)
     bounds = bound(a, search, mine, clear, need, threshold)
-    gap = np.append(gap, np.inf)
-    np.minimum.at(gap, part, bounds.high)
-    gap = gap[:-1]
+    gap = np.minimum(gap, bounds.least[:-1])
     cell_low = apart.min(axis=1)[a.map.cell_patch]
     cell_low[bounds.cells] = bounds.cell_low
-    close = bounds.close
-    sides = flood(a, b, close, bounds.low, bounds.cells, cell_low)
+    sides = flood(a, b, bounds.close, bounds.low, bounds.cells, cell_low)
     asked = np.flatnonzero(~sides.free | (bounds.low[sides.points] <= bounds.need[part[sides.points]]))
     clear = clear[patch]
     clear[sides.points[sides.free]] = np.inf  # nearer than what was left out, if they matter
@@ -141,6 +134,17 @@ def _one_way(a: PosedSkin, b: PosedSkin, apart: Float64s, gap: Float64s, thresho
     turned = group[doubtful[told != (agreed[doubtful] < 0)]]
     distance[:count][np.isin(group, turned)] *= -1
     return _Side(chosen, distance, corner, gap, within)
+
+
+def _patches_near(a: PosedSkin, apart: Float64s, need: Float64s) -> tuple[Indices, Indices, Float64s]:
+    """Patches of A that matter, those of B to search for them, and how far each of A is from the others of B.
+
+    The others are farther than ``need`` from all of A's that matter.
+    """
+    need = need[a.map.patches.part, None]
+    mine = np.flatnonzero((apart <= need).any(axis=1))
+    near = (apart[mine] <= np.maximum(need[mine], TIE_WITHIN)).any(axis=0)
+    return mine, np.flatnonzero(near), np.where(near, np.inf, apart).min(axis=1)
 
 
 def _own_deepest(a: PosedSkin, within: Indices, bounds: Bounds) -> Bools:
