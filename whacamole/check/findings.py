@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from whacamole.labels.arrays import Float64s
+from whacamole.words import counted
 
 Value = float | int | str
 
@@ -78,8 +79,8 @@ class Findings:
 
     def lines(self) -> list[str]:
         """One line a finding, one a note, and a summary at the end."""
-        audited = f"{_counted(self.sequences, 'sequence')}, {_counted(self.frames, 'frame')}"
-        verdict = "nothing wrong" if self.ok else _counted(len(self), "finding")
+        audited = f"{counted(self.sequences, 'sequence')}, {counted(self.frames, 'frame')}"
+        verdict = "nothing wrong" if self.ok else counted(len(self), "finding")
         notes = (f"note: {note}" for note in self.notes)
         return [*(finding.line() for finding in self.findings), *notes, f"{audited}: {verdict}"]
 
@@ -120,10 +121,6 @@ class Report:
             self.found.append(
                 Finding(self.sequence, worst, label, message, float(values[worst]), limit, end - start)
             )
-
-
-def _counted(number: int, what: str) -> str:
-    return f"{number} {what}" if number == 1 else f"{number} {what}s"
 
 
 def _text(value: Value) -> str:

@@ -6,6 +6,8 @@ from typing import Annotated
 
 import typer
 
+from whacamole.words import counted
+
 __all__ = ["export"]
 
 
@@ -20,7 +22,7 @@ def export(
     out: Annotated[Path, typer.Option(help="Folder to write, which must not be there yet.")],
     split: Annotated[str | None, typer.Option(help="Only this split.", show_default="all sequences")] = None,
     every: Annotated[
-        int, typer.Option(min=1, help="Take every so manieth frame (humandata, bedlam, coco, webdataset).")
+        int, typer.Option(min=1, help="Take every Nth frame (humandata, bedlam, coco, webdataset).")
     ] = 1,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print errors only.")] = False,
     json_output: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
@@ -40,4 +42,6 @@ def export(
     for note in result.notes:
         typer.echo(note, err=True)
     if not quiet:
-        typer.echo(f"{out}: {result.sequences} sequences as {to}, {len(result.files)} files")
+        typer.echo(
+            f"{out}: {counted(result.sequences, 'sequence')} as {to}, {counted(len(result.files), 'file')}"
+        )

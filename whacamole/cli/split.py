@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
+from whacamole.words import counted
+
 if TYPE_CHECKING:
     from whacamole.dataset import Dataset
 
@@ -38,7 +40,7 @@ def split(
         return
     for name, ids in sides.items():
         if not quiet:
-            typer.echo(f"{name}: {len(ids)} sequences")
+            typer.echo(f"{name}: {counted(len(ids), 'sequence')}")
     if 0.0 < test_fraction < 1.0 and not all(sides.values()):
         typer.echo("one side is empty, there are few groups to draw from; another --seed may help", err=True)
 

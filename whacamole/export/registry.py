@@ -112,7 +112,7 @@ def export_dataset(
         to: the format, a key of :data:`EXPORTERS`.
         out: a folder that is not there yet.
         split: only this split; None takes every sequence.
-        every: take every so manieth frame, where the format holds single frames.
+        every: take every Nth frame, where the format holds single frames.
 
     Raises:
         RecipeError: no such format, or it cannot leave frames out.

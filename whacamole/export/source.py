@@ -33,7 +33,7 @@ class Source:
     Attributes:
         dataset: its sequences, in the order they are written.
         label: what the part is called in file names: ``"train"``, ``"test"`` or ``"all"``.
-        every: take every so manieth frame of a sequence, from its first.
+        every: take every Nth frame of a sequence, from its first.
         out: the folder the result will stand in, for paths relative to it.
     """
 

@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,11 +11,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from typer.testing import CliRunner
 
+import tiny_dataset
+import whacamole
 from whacamole.body import EMBEDDED_NAME
+from whacamole.cli.split import split
 from whacamole.cli.stats import stats
 from whacamole.dataset import Dataset
 from whacamole.dataset.card import card_text, statistics_text, write_card
 from whacamole.dataset.statistics import Spread, Statistics, collect
+from whacamole.viewing.page import write_page
 
 
 @pytest.fixture(scope="module")
@@ -117,3 +122,31 @@ def test_plots_leave_out_empty_rows_at_the_ends(numbers: Statistics) -> None:
     rows = shown.partition("```text\n")[2].splitlines()[:4]
     assert [" ".join(row.split()[:4]) for row in rows[:3]] == ["1 to 2 25.0%", "2 to 3 0.0%", "3 to 4 75.0%"]
     assert rows[3].startswith("least 1.5")
+
+
+def test_a_split_counts_card_and_page_anew(tmp_path: Path) -> None:
+    tiny_dataset.write_dataset(tmp_path / "dataset")
+    layout = whacamole.open(tmp_path / "dataset").layout
+    write_card(layout)
+    app = typer.Typer()
+    app.command()(split)
+    for fraction, sides in (
+        ("1.0", ("| test | 3 |", "| train | 0 |")),
+        ("0.0", ("| test | 0 |", "| train | 3 |")),
+    ):
+        assert CliRunner().invoke(app, [str(layout.root), "--test-fraction", fraction]).exit_code == 0
+        assert all(side in layout.card.read_text() for side in sides)
+        assert not (layout.root / "index.html").exists()  # nobody made one
+    write_page(layout)
+    before = (layout.root / "index.html").read_text()
+    CliRunner().invoke(app, [str(layout.root), "--test-fraction", "1.0"])
+    assert (layout.root / "index.html").read_text() != before
+
+
+def test_bins_of_nothing_are_left_out_before_and_after() -> None:
+    spread = Spread((0.0, 1.0, 2.0, 3.0, 4.0))
+    assert spread.rows() == []
+    spread.add(np.array([1.5, 3.5, 3.6]))
+    assert spread.rows() == [("1 to 2", 1), ("2 to 3", 0), ("3 to 4", 2)]
+    spread.add(np.array([9.0]))
+    assert spread.rows()[-1] == ("4 and more", 1)
