@@ -80,6 +80,9 @@ UNDER_HAT: Final = ("hair_cropped", "hair_short")
 SUIT: Final = ("suit_jacket", "suit_trousers", "shoes_dress")
 """Worn together or not at all."""
 
+HIDDEN_BY: Final = {"shorts_denim": ("jacket", "pullover")}
+"""Bottoms that end above the hem of these tops, so that whoever wears both seems to wear one."""
+
 
 @dataclass(frozen=True)
 class Worn:
@@ -222,6 +225,9 @@ def _clothes(rng: np.random.Generator, wardrobe: Catalogue, gender: Gender) -> t
         wardrobe.of_slot("top", gender),
     )
     chosen = [_pick(rng, [i for i in items if i.name not in SUIT]) for items in slots]
+    bottom, _, top = chosen
+    if top.name in HIDDEN_BY.get(bottom.name, ()):
+        chosen[0] = slots[0][(slots[0].index(bottom) + 1) % len(slots[0])]
     return tuple(_coloured(rng, item) for item in chosen)
 
 

@@ -1,5 +1,6 @@
 """The cast: one person a seed, believable, evenly spread."""
 
+import dataclasses
 from collections import Counter
 
 import numpy as np
@@ -7,9 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from whacamole.body import BodyModel
-from whacamole.wardrobe import cast
-from whacamole.wardrobe.cast import BODY_MASS_INDEX, NO_HAIR, SUIT, TONE_RANGE, YEARS, body_mass_index
+from whacamole.body import BodyModel, BodyParams
+from whacamole.wardrobe import cast, dress
+from whacamole.wardrobe.cast import BODY_MASS_INDEX, NO_HAIR, SUIT, TONE_RANGE, YEARS, Worn, body_mass_index
 from whacamole.wardrobe.catalogue import AGES, GENDERS, ORIGINS, catalogue
 
 
@@ -62,6 +63,21 @@ def test_everyone_is_dressed_and_consistent(seed):
     assert TONE_RANGE[member.origin][0] <= member.tone <= TONE_RANGE[member.origin][1]
     if NO_HAIR[member.gender][member.age] == 0 and not slots["hat"]:
         assert slots["hair"] == 1
+
+
+@pytest.mark.parametrize("gender", GENDERS)
+def test_no_top_hides_what_is_worn_below(gender, tmp_path):
+    """A hand's breadth of every bottom shows below the hem of the top, at rest."""
+    body, person = BodyModel.embedded(), cast(0, gender=gender)
+    at_rest = BodyParams.zeros(3, person.betas)
+    hem = {}
+    for item in (*catalogue().of_slot("top", gender), *catalogue().of_slot("bottom", gender)):
+        alone = dataclasses.replace(person, worn=(Worn(item.name),))
+        mesh = next(m for m in dress(alone, body, at_rest, textures=tmp_path) if item.name in m.name)
+        hem[item.name] = mesh.vertices[1, :, 1].min()
+    for seed in range(300):
+        bottom, _, top = (worn.item for worn in cast(seed, gender=gender).worn[:3])
+        assert hem[top] - hem[bottom] > 0.11, (seed, bottom, top)
 
 
 def test_statures_and_weights_are_those_of_adults():
