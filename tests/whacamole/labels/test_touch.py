@@ -309,6 +309,20 @@ def test_no_vertex_inside_is_missed_where_a_skin_crosses_itself(human, model):
         assert side.distance[part] <= far[human.map.part[deep] == part].min() + 1e-9
 
 
+@pytest.mark.parametrize(("seed", "offset"), [(104, 0.3), (125, 0.15)])
+def test_a_sheet_turned_inside_out_draws_nobody_in(human, model, standing, seed, offset):
+    """Normals take points before such a sheet for inside, and all that are tied to them are drawn in."""
+    a = model.pose(standing(1, seed=seed)).vertices[0].astype(np.float64)
+    b = model.pose(standing(1, x=offset, y=0.1, seed=seed + 1000)).vertices[0].astype(np.float64)
+    skins = human.posed(a), human.posed(b)
+    sides = touch(*skins, len(human.parts.names), THRESHOLD)
+    for own, other, side in ((*skins, sides[0]), (*skins[::-1], sides[1])):
+        touching = np.flatnonzero(side.points)
+        some = touching[:: max(1, len(touching) // 60)]
+        exact = signed_distances(own.points[some], other.points[human.map.faces])
+        assert (exact <= THRESHOLD).all()
+
+
 @given(seed=st.integers(0, 2**32 - 1))
 @settings(max_examples=10, deadline=None, derandomize=True)
 def test_inside_by_solid_angles(seed):
