@@ -11,6 +11,7 @@ import importlib
 import logging
 import os
 import shutil
+import subprocess
 import sys
 from collections.abc import Iterator
 from concurrent.futures import Executor, ThreadPoolExecutor
@@ -24,6 +25,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from render_jobs.errors import EngineError, RenderJobError
 
 CONNECT_S = 30.0
+SBATCH_S = 60.0
 IN_FLIGHT = 1000
 """Tasks given to a Dask scheduler at a time: enough for it to see how many workers it needs."""
 
@@ -111,7 +113,7 @@ def slurm_crew(config: SlurmConfig, log_folder: Path) -> Iterator[Crew]:
     it was at goes on elsewhere.
 
     Raises:
-        EngineError: Dask is not installed, or there is no ``sbatch`` here.
+        EngineError: Dask is not installed, there is no ``sbatch`` here, or it refuses such jobs.
     """
     jobqueue, distributed = _imported("dask_jobqueue"), _imported("distributed")
     if shutil.which("sbatch") is None:
@@ -122,9 +124,32 @@ def slurm_crew(config: SlurmConfig, log_folder: Path) -> Iterator[Crew]:
     with jobqueue.SLURMCluster(
         **slurm_options(config, log_folder), scheduler_options={"dashboard_address": ":0"}
     ) as cluster:
+        _check_slurm_takes(cluster.job_script())
         cluster.adapt(minimum_jobs=0, maximum_jobs=config.workers)
         with distributed.Client(cluster, set_as_default=False) as client:
             yield _crew_of(client, f"Slurm, up to {config.workers} jobs of {config.cores} cores")
+
+
+def _check_slurm_takes(script: str) -> None:
+    """Ask Slurm whether it would take a job; none is submitted.
+
+    Without this, jobs that are refused (no such partition, no account, no controller) are tried without end.
+    """
+    try:
+        asked = subprocess.run(
+            ["sbatch", "--test-only"], input=script, capture_output=True, text=True, timeout=SBATCH_S,
+            check=False,
+        )  # fmt: skip
+    except subprocess.TimeoutExpired as error:
+        raise EngineError(
+            f"cluster slurm: sbatch did not answer within {SBATCH_S:.0f} s; try it later"
+        ) from error
+    if asked.returncode != 0:
+        reason = " ".join((asked.stderr or asked.stdout).split())
+        raise EngineError(
+            f"cluster slurm: sbatch would refuse the jobs ({reason}); mend --cluster-config, "
+            "or see `sinfo` and `scontrol ping`"
+        )
 
 
 def slurm_options(config: SlurmConfig, log_folder: Path) -> dict[str, Any]:

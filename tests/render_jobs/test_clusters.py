@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -87,6 +88,27 @@ def test_no_sbatch_names_the_way_without(tmp_path: Path, monkeypatch: pytest.Mon
     monkeypatch.setenv("PATH", str(tmp_path))
     with pytest.raises(EngineError, match="--shard"), slurm_crew(SlurmConfig(), tmp_path):
         pass
+
+
+@pytest.mark.filterwarnings("ignore")  # of Dask's event loop, which is none of ours
+def test_jobs_that_slurm_refuses_are_told_before_any_is_submitted(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("dask_jobqueue")
+    asked = tmp_path / "asked"
+    sbatch = tmp_path / "sbatch"
+    sbatch.write_text(f"#!/bin/sh\necho $* >> {asked}\ncat >> {asked}\necho invalid partition >&2\nexit 1\n")
+    sbatch.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path}:{os.environ['PATH']}")
+    with (
+        pytest.raises(EngineError, match=r"would refuse the jobs \(invalid partition\)"),
+        slurm_crew(SlurmConfig(partition="nowhere"), tmp_path / "logs"),
+    ):
+        pass
+    lines = asked.read_text().splitlines()
+    assert lines[0] == "--test-only"
+    assert "#SBATCH -p nowhere" in lines
+    assert sum(line.startswith("--test-only") for line in lines) == 1
 
 
 def test_outside_a_dask_worker_there_is_one_slot() -> None:

@@ -25,6 +25,7 @@ WRONG = {
     "a lens": (["--focal-mm", "50,24"], "the smaller number comes first"),
     "no parts": (["--shard", "0/0"], "at least one part"),
     "no cluster": (["--cluster", "somewhere"], "such as tcp://host:8786"),
+    "an address of no kind": (["--cluster", "http://host:8786"], "such as tcp://host:8786"),
     "a cluster's file": (["--cluster-config", "slurm.yaml"], "--cluster slurm alone"),
     "no recipe": (["--recipe", "recipe.yaml"], "recipe.yaml: not a readable recipe (No such file"),
     "no body": (["--body-model", "SMPLX.npz"], "SMPLX.npz: No such file"),

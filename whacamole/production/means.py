@@ -13,6 +13,9 @@ __all__ = ["Limits", "Means", "Shard"]
 WORKER = (sys.executable, "-m", "whacamole.production.worker")
 """What makes one sequence; the path of the order is added."""
 
+SCHEMES = ("tcp", "tls", "ucx", "ws", "wss")
+"""What a Dask scheduler's address may begin with."""
+
 
 @dataclass(frozen=True)
 class Shard:
@@ -96,7 +99,8 @@ class Means:
 
     def __post_init__(self) -> None:
         """Refuse a cluster that is none."""
-        if self.cluster not in (None, "slurm") and "://" not in str(self.cluster):
+        scheme, colon, _ = str(self.cluster).partition("://")
+        if self.cluster not in (None, "slurm") and not (colon and scheme in SCHEMES):
             raise RecipeError(
                 f"cluster {self.cluster!r} is neither slurm nor an address such as tcp://host:8786"
             )
