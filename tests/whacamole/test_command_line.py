@@ -24,7 +24,7 @@ WRONG = {
     "no size": (["--size", "0x0"], "greater than or equal to 16 (got 0)"),
     "a lens": (["--focal-mm", "50,24"], "the smaller number comes first"),
     "no parts": (["--shard", "0/0"], "at least one part"),
-    "no cluster": (["--cluster", "somewhere"], "such as tcp://host:8786"),
+    "no cluster": (["--cluster", "tcp"], "such as tcp://host:8786"),
     "an address of no kind": (["--cluster", "http://host:8786"], "such as tcp://host:8786"),
     "a cluster's file": (["--cluster-config", "slurm.yaml"], "--cluster slurm alone"),
     "no recipe": (["--recipe", "recipe.yaml"], "recipe.yaml: not a readable recipe (No such file"),

@@ -196,7 +196,7 @@ def _tell(outcome: "Outcome", *, quiet: bool) -> None:
         typer.echo(f"{outcome.id}: {outcome.problem}", err=True)
     elif not quiet:
         typer.echo(
-            f"{outcome.id}: {outcome.people} people, "
+            f"{outcome.id}: {outcome.people} {'person' if outcome.people == 1 else 'people'}, "
             f"camera in {outcome.camera_frames} of {outcome.frames} frames, scale {outcome.scale:.4g}"
         )
         for note in outcome.notes:

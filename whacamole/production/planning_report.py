@@ -9,6 +9,7 @@ from whacamole.production.locations import places_of
 from whacamole.production.planning import Planned, make_plans
 from whacamole.production.tables import table_console, table_of
 from whacamole.recipe import Recipe
+from whacamole.words import counted
 
 __all__ = ["plan_with_progress", "print_plans"]
 
@@ -44,7 +45,7 @@ def print_plans(planned: list[Planned], refused: list[str], *, quiet: bool) -> N
         console = table_console()
         console.print(table)
         breaches = sum(not entry.ok for entry in planned)
-        console.print(f"{len(planned)} plans, {breaches} with a breach or an error")
+        console.print(f"{counted(len(planned), 'plan')}, {breaches} with a breach or an error")
     for reason in refused:
         errors.print(f"refused: {reason}", markup=False)
     for entry in planned:
