@@ -5,6 +5,7 @@ A recipe comes from three places, each over the one before: the defaults below, 
 threads, devices), so the same recipe gives the same labels on any machine.
 """
 
+import difflib
 import os
 import textwrap
 from pathlib import Path
@@ -242,7 +243,14 @@ def _one_line(error: ValidationError) -> str:
     faults = []
     for fault in error.errors():
         name = ".".join(str(part) for part in fault["loc"][:1]).replace("_", "-")
-        reason = fault["msg"].removeprefix("Value error, ")
+        reason = fault["msg"].removeprefix("Value error, ").replace("Input should be", "must be")
+        if fault["type"] == "extra_forbidden":
+            near = difflib.get_close_matches(str(fault["loc"][0]), Recipe.model_fields, n=1)
+            reason = "a recipe has no such entry; " + (
+                f"is {near[0]} meant?" if near else "see `whacamole recipe`"
+            )
+        elif fault["type"] == "path_type":
+            reason = "must be a path"
         shown = "" if fault["type"] in ("value_error", "extra_forbidden") else f" (got {fault['input']!r})"
         faults.append(f"{name}: {reason}{shown}" if name else f"{reason}{shown}")
     return "; ".join(dict.fromkeys(faults))  # both numbers of a pair may have the same fault
