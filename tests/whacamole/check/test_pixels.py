@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from whacamole.check.limits import Limits
+from whacamole.check.order import correlation
 from whacamole.check.pixels import Hands, Shown, draw, person_pixels
 
 SIZE = (40, 30)
@@ -56,3 +57,13 @@ def test_clothes_of_the_hip_may_hide_a_hand_but_a_hand_may_not_be_elsewhere(all_
     drawn_hand = np.count_nonzero(hands.triangle[drawn.raster.triangle] & body)
     assert (found.hands == drawn_hand) == all_hand
     assert found.hands > 0
+
+
+def test_edges_of_a_person_of_a_few_pixels_say_nothing_of_the_order() -> None:
+    rng = np.random.default_rng(0)
+    edges, colours = rng.random((2, 60, 60))
+    mask = np.zeros((60, 60), np.int64)
+    mask[10:25, 10:25] = 1  # 225 pixels
+    assert np.isnan(correlation(edges, colours, mask))
+    mask[10:30, 10:30] = 1
+    assert np.isfinite(correlation(edges, colours, mask))
