@@ -1,13 +1,15 @@
 """How fast labels are made on one core: ``python -m benchmarks.labels``.
 
 Times are CPU time of the calling thread, the best of several runs: contact between two people far apart,
-near, holding hands, in an embrace, back to chest, crawling over one another and deep in each other; the
-rasteriser; and whole sequences of two people. ``OPENBLAS_NUM_THREADS=1`` keeps BLAS
-on that thread, too.
+near, holding hands, in an embrace, back to chest, crawling over one another and deep in each other; every
+fifth frame of captured pairs, the embedded ones and those under ``--motions``; the rasteriser; and whole
+sequences of two people. ``OPENBLAS_NUM_THREADS=1`` keeps BLAS on that thread, too.
 """
 
+import argparse
 import time
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 
@@ -26,7 +28,8 @@ from whacamole.labels.people import to_camera
 from whacamole.labels.sequence import posed_frames
 from whacamole.labels.skin import OuterSkin
 from whacamole.labels.touch import touch
-from whacamole.motion import embedded_motions, read_motion
+from whacamole.motion import embedded_motions, find_motions, read_motion
+from whacamole.take.placing import body_params
 
 FRAMES = 300
 
@@ -103,6 +106,37 @@ def contact(model: BodyModel) -> None:
         print(f"contact, {name}: {best(label):.1f} ms, {touching} vertices touch, least gap {gap:.3f} m")
 
 
+def captured(model: BodyModel, motions: Path) -> None:
+    """Contact in the pairs of a folder, at the mean shape: mean, 95th percentile and worst frame."""
+    parts = model_parts(model)
+    skin = OuterSkin.build(model.v_template, model.faces)
+    skin_map = SkinMap.build(skin, parts, model.v_template)
+    for file in find_motions(motions):
+        motion = read_motion(file)
+        if not motion.interactive:
+            continue
+        hands = np.zeros((2, 15, 3))
+        pair = [
+            model.pose(body_params(person, model, np.zeros(10), hands, 1.0).slice(0, None, 5))
+            for person in motion.people
+        ]
+        spent, gaps = [], []
+        for bodies in zip(*(body.vertices for body in pair), strict=True):
+
+            def label(bodies: tuple[np.ndarray, ...] = bodies) -> object:
+                skins = (PosedSkin(skin_map, skin.close(body)) for body in bodies)
+                return touch(*skins, len(parts.names), 0.01)
+
+            gaps.append(label()[0].distance.min())
+            spent.append(best(label, 3))
+        middle, late, worst = np.mean(spent), np.percentile(spent, 95), np.max(spent)
+        touching = np.mean(np.array(gaps) <= 0.01)
+        print(
+            f"contact, {motion.id}, {len(spent)} frames, {touching:.0%} touching, deepest "
+            f"{max(0.0, -min(gaps)):.3f} m: mean {middle:.1f} ms, 95 % {late:.1f} ms, worst {worst:.1f} ms"
+        )
+
+
 def raster(model: BodyModel) -> None:
     """One body filling a 640 x 360 image."""
     body = model.pose(person(0, 0, 0)).vertices[0]
@@ -140,7 +174,12 @@ def sequence(model: BodyModel) -> None:
 
 
 if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--motions", type=Path, help="a folder with more captured pairs")
+    options = parser.parse_args()
     body_model = BodyModel.embedded()
     contact(body_model)
+    for folder in (embedded_motions(), *([options.motions] if options.motions else [])):
+        captured(body_model, folder)
     raster(body_model)
     sequence(body_model)
