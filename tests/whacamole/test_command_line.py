@@ -84,6 +84,15 @@ def test_a_dry_run_into_a_pipe_names_motions_in_full_and_what_is_not_there(
     assert "still_poses.npz: a motion of 1 frame(s); give at least 2" in told.err
 
 
+def test_where_no_motion_is_usable_no_dataset_is_begun(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "walk_poses.npz").write_text("no motion", encoding="utf-8")
+    assert run(monkeypatch, "render", "--motions", tmp_path, "--out", tmp_path / "dataset") == 1
+    assert "refused: " in capsys.readouterr().err
+    assert not (tmp_path / "dataset").exists()
+
+
 def test_what_the_system_refuses_is_one_line(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

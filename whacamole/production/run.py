@@ -66,7 +66,8 @@ def produce(
     check_folder(recipe, layout)
     facts_of_dataset = _facts(recipe)
     worklist = _worklist(recipe, layout, means)
-    if dry_run:
+    nothing_usable = bool(worklist.refused) and not worklist.orders and means.shard is None
+    if dry_run or nothing_usable:
         return Production(layout.root, worklist, {}, 0.0, {}, dry_run=True, problems=missing_places(recipe))
     search = search or EngineSearch(recipe, layout)
     if means.check_disk:
