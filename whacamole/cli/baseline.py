@@ -115,6 +115,7 @@ def run(
 ) -> None:
     """Recover people and camera in one metric world, from pixels or from what other programs made of them."""
     _one_thread()
+    from whacamole.baseline.intrinsics import focal_length
     from whacamole.baseline.modes import components_named, mode_named
     from whacamole.baseline.run import Setup, one_video, run_all, split_footage
     from whacamole.baseline.setup import estimator_named, odometry_named
@@ -124,6 +125,8 @@ def run(
 
     if (data is None) == (video is None):
         raise BaselineError("name either a dataset by --data or a video by --video")
+    if focal not in ("auto", "given"):
+        focal_length(focal, 1, 1)  # a mistyped one is told once, not for every sequence
     setup = Setup(
         estimator=estimator_named(estimator, estimates, noise, seed),
         odometry=odometry_named(vo, trajectories, noise, seed),

@@ -119,6 +119,7 @@ def test_what_is_there_is_kept_if_asked_for(dataset: Path, tmp_path: Path) -> No
         (("--data", "there", "--estimator", "files"), "--estimator files needs --estimates FOLDER"),
         (("--data", "there", "--vo", "files", "--trajectories", "nowhere"), "nowhere: not there"),
         (("--data", "there", "--mode", "best"), "no mode 'best', only paper, release, steady"),
+        (("--data", "there", "--focal", "long"), "focal length 'long': expected given, diagonal"),
         (("--data", "there", "--components", "imu"), "components 'imu': expected both, vo, mv"),
         (("--video", "nowhere.mp4"), "nowhere.mp4: not readable as a video"),
         (("--data", "there", "--weights", "nowhere.safetensors"), "no weights of the velocimeter"),
