@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 from PIL import Image
 from scipy import ndimage
 
+from tests_support import run_cli
+
 pytestmark = [pytest.mark.blender, pytest.mark.slow]
 
 SEEN = 0.02
@@ -78,8 +80,27 @@ def _sequences(dataset: Path) -> list[Path]:
     return sorted((dataset / "sequences").iterdir())
 
 
+Posed = list[tuple[Path, int, Arrays, Arrays, NDArray[np.float64]]]
+
+
 @pytest.fixture(scope="module")
-def posed(dataset: Path, exported_body: Path) -> list[tuple[Path, int, Arrays, Arrays, NDArray[np.float64]]]:
+def posed(dataset: Path, exported_body: Path) -> Posed:
+    return _everybody(dataset, exported_body)
+
+
+@pytest.fixture(scope="module")
+def posed_large(motions: Path, exported_body: Path, tmp_path_factory: pytest.TempPathFactory) -> Posed:
+    """The same two scenes in pictures that show hands; both engines draw the same depth (test_truth)."""
+    out = tmp_path_factory.mktemp("large") / "data"
+    result = run_cli(
+        "render", "--motions", motions, "--shots", "arc,tracking", "--frames", 3, "--size", "1280x720",
+        "--engine", "raster", "--seed", 5, "--out", out,
+    )  # fmt: skip
+    assert result.returncode == 0, result.stdout + result.stderr
+    return _everybody(out, exported_body)
+
+
+def _everybody(dataset: Path, exported_body: Path) -> Posed:
     """Return (sequence, person, people, camera, vertices in the camera frame) of everybody."""
     found = []
     for sequence in _sequences(dataset):
@@ -104,7 +125,7 @@ def _turned_to_the_camera(points: NDArray[np.float64], faces: NDArray[np.int64])
     return cosine > 0.2
 
 
-def test_visible_vertices_fall_on_the_mask(posed: Any, exported_body: Path) -> None:
+def test_visible_vertices_fall_on_the_mask(posed: Posed, exported_body: Path) -> None:
     faces = _load(exported_body)["f"].astype(np.int64)
     for sequence, person, people, camera, vertices in posed:
         on_mask = []
@@ -117,21 +138,22 @@ def test_visible_vertices_fall_on_the_mask(posed: Any, exported_body: Path) -> N
         assert seen.mean() >= 0.99
 
 
-def test_depth_is_that_of_the_bare_hands(posed: Any, exported_body: Path) -> None:
+def test_depth_is_that_of_the_bare_hands(posed_large: Posed, exported_body: Path) -> None:
     """Hands wear nothing, so there the depth map must show the body itself."""
     model = _load(exported_body)
     faces, hand = model["f"].astype(np.int64), model["weights"][:, 25:].sum(axis=1) > 0.9
     gaps = []
-    for sequence, _, _, camera, vertices in posed:
+    for sequence, _, _, camera, vertices in posed_large:
         for frame, points in enumerate(vertices):
             gap, column, row, chosen = _gaps(sequence, camera, points, frame, faces)
             nearest = _first_at_each_pixel(column, row, points[chosen, 2])
             near_surface = (np.abs(gap) < SEEN_NEAR) & _off_edges(sequence, frame)[row, column]
             gaps.append(gap[hand[chosen] & nearest & near_surface])
     found = np.abs(np.concatenate(gaps))
-    assert len(found) > 80, "too little of the hands is seen: the test means nothing"
-    assert np.median(found) < 0.01  # a pixel is 1.5 cm wide there
-    assert np.quantile(found, 0.9) < 0.02
+    assert len(found) > 500, "too little of the hands is seen: the test means nothing"
+    # The rest are fingers just behind others.
+    assert np.median(found) < 0.001
+    assert np.quantile(found, 0.75) < 0.006  # a pixel is 4 to 8 mm wide there
 
 
 def _off_edges(sequence: Path, frame: int) -> NDArray[np.bool_]:
@@ -178,7 +200,7 @@ def test_joints_image_is_the_projection(dataset: Path, exported_body: Path) -> N
             np.testing.assert_allclose(people["joints_camera"][person], local, atol=1e-5)
 
 
-def test_flow_is_the_motion_of_the_projection(posed: Any) -> None:
+def test_flow_is_the_motion_of_the_projection(posed: Posed) -> None:
     for sequence, _, _, camera, vertices in posed:
         pixels = _project(vertices, camera)
         errors, travel = [], []

@@ -51,10 +51,10 @@ def test_realism_changes_the_pictures_alone_and_is_written_down(tmp_path: Path) 
 @pytest.mark.parametrize(
     ("option", "value", "message"),
     [
-        ("motion_blur", "1.5", "motion-blur: Input should be less than or equal to 1"),
+        ("motion_blur", "1.5", "motion-blur: must be less than or equal to 1"),
         ("f_number", "wide", "'wide' is neither a number nor two"),
         ("exposure", "1,-1", "1,-1: the smaller number comes first"),
-        ("noise", "-3", "noise: Input should be greater than or equal to 0"),
+        ("noise", "-3", "noise: must be greater than or equal to 0"),
     ],
 )
 def test_a_wrong_value_is_named(option: str, value: str, message: str) -> None:
