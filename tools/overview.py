@@ -2,10 +2,11 @@ r"""The picture at the top of the README: what a dataset holds, a row a sequence
 
 ::
 
-    whacamole render --out build/overview --frames 48 --size 320x180 --quality draft \
+    mkdir build/three && cp whacamole/assets/motions/{duet_00,duet_01,run,dance_a}.npz build/three
+    whacamole render --motions build/three --out build/overview --frames 24 --size 480x270 \
         --passes rgb,mask,depth,normal,flow
     python -m tools.overview build/overview --out docs/images/overview.jpg \
-        --sequences duet-00:30,run-00,dance_a-00:12
+        --sequences duet-00:5,run-00:12,dance_a-00:3
 
 Colour, the labels over it, mask, depth, normals, and the scene from aside with the frame inside the camera.
 """
