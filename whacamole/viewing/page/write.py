@@ -88,9 +88,11 @@ def _about(index: Mapping[str, Any], numbers: Statistics) -> str:
     versions = index.get("versions")
     version = versions.get("whacamole", "") if isinstance(versions, Mapping) else ""
     models = ", ".join(numbers.body_models) or "none"
+    seconds = numbers.seconds
+    length = f"{seconds:.1f} seconds" if seconds < 120 else f"{seconds / 60:,.1f} minutes"
     return (
         f"{numbers.sequences:,} sequences, {numbers.frames:,} frames, {numbers.instances:,} instances "
-        f"(a person in an image), {numbers.seconds / 60:,.1f} minutes. Made by whacamole {version}, "
+        f"(a person in an image), {length}. Made by whacamole {version}, "
         f"seed {index.get('seed', 'not stated')}, body model {models}."
     )
 
