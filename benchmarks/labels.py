@@ -9,6 +9,7 @@ sequences of two people. ``OPENBLAS_NUM_THREADS=1`` keeps BLAS on that thread, t
 import argparse
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -27,7 +28,7 @@ from whacamole.labels.patches import PosedSkin, SkinMap
 from whacamole.labels.people import to_camera
 from whacamole.labels.sequence import posed_frames
 from whacamole.labels.skin import OuterSkin
-from whacamole.labels.touch import touch
+from whacamole.labels.touch import Touch, touch
 from whacamole.motion import embedded_motions, find_motions, read_motion
 from whacamole.take.placing import body_params
 
@@ -78,11 +79,24 @@ def best(work: Callable[[], object], runs: int = 15) -> float:
     return 1e3 * min(times)
 
 
-def contact(model: BodyModel) -> None:
-    """Two people, one frame, both directions, from vertices to labels."""
+Label = Callable[[np.ndarray, np.ndarray], tuple[Touch, Touch]]
+
+
+def contact_of(model: BodyModel) -> Label:
+    """What labels the contact of two people of a model, both directions, from their vertices."""
     parts = model_parts(model)
     skin = OuterSkin.build(model.v_template, model.faces)
     skin_map = SkinMap.build(skin, parts, model.v_template)
+
+    def label(first: np.ndarray, other: np.ndarray) -> tuple[Touch, Touch]:
+        skins = (PosedSkin(skin_map, skin.close(body)) for body in (first, other))
+        return touch(*skins, len(parts.names), 0.01)
+
+    return label
+
+
+def contact(model: BodyModel, label: Label) -> None:
+    """Two people, one frame."""
     upright = person(0, 0, 0)
     for name, one, two in (
         ("3 m apart", upright, person(0, 3.0, np.pi)),
@@ -94,23 +108,16 @@ def contact(model: BodyModel) -> None:
         ("crawling, one over the other", crawling(model, 10, (0, 0, 0)), crawling(model, 35, (0, 0, 0.28))),
         ("20 cm into each other", upright, person(0.1, 0.1, 0)),
     ):
-        first, other = model.pose(one).vertices[0], model.pose(two).vertices[0]
-
-        def label(bodies: tuple[np.ndarray, ...] = (first, other)) -> object:
-            skins = (PosedSkin(skin_map, skin.close(body)) for body in bodies)
-            return touch(*skins, len(parts.names), 0.01)
-
-        ours, theirs = label()
+        bodies = model.pose(one).vertices[0], model.pose(two).vertices[0]
+        ours, theirs = label(*bodies)
         touching = int(ours.points.sum() + theirs.points.sum())
         gap = ours.distance.min()
-        print(f"contact, {name}: {best(label):.1f} ms, {touching} vertices touch, least gap {gap:.3f} m")
+        spent = best(partial(label, *bodies))
+        print(f"contact, {name}: {spent:.1f} ms, {touching} vertices touch, least gap {gap:.3f} m")
 
 
-def captured(model: BodyModel, motions: Path) -> None:
+def captured(model: BodyModel, label: Label, motions: Path) -> None:
     """Contact in the pairs of a folder, at the mean shape: mean, 95th percentile and worst frame."""
-    parts = model_parts(model)
-    skin = OuterSkin.build(model.v_template, model.faces)
-    skin_map = SkinMap.build(skin, parts, model.v_template)
     for file in find_motions(motions):
         motion = read_motion(file)
         if not motion.interactive:
@@ -122,13 +129,8 @@ def captured(model: BodyModel, motions: Path) -> None:
         ]
         spent, gaps = [], []
         for bodies in zip(*(body.vertices for body in pair), strict=True):
-
-            def label(bodies: tuple[np.ndarray, ...] = bodies) -> object:
-                skins = (PosedSkin(skin_map, skin.close(body)) for body in bodies)
-                return touch(*skins, len(parts.names), 0.01)
-
-            gaps.append(label()[0].distance.min())
-            spent.append(best(label, 3))
+            gaps.append(label(*bodies)[0].distance.min())
+            spent.append(best(partial(label, *bodies), 3))
         middle, late, worst = np.mean(spent), np.percentile(spent, 95), np.max(spent)
         touching = np.mean(np.array(gaps) <= 0.01)
         print(
@@ -178,8 +180,9 @@ if __name__ == "__main__":
     parser.add_argument("--motions", type=Path, help="a folder with more captured pairs")
     options = parser.parse_args()
     body_model = BodyModel.embedded()
-    contact(body_model)
+    labels = contact_of(body_model)
+    contact(body_model, labels)
     for folder in (embedded_motions(), *([options.motions] if options.motions else [])):
-        captured(body_model, folder)
+        captured(body_model, labels, folder)
     raster(body_model)
     sequence(body_model)
