@@ -6,6 +6,8 @@ from typing import Annotated
 
 import typer
 
+from whacamole.cli.options import BodyModelOfDataset
+
 __all__ = ["check"]
 
 
@@ -14,12 +16,7 @@ def check(
     checksums: Annotated[
         bool, typer.Option(help="Compare every file with the checksum noted when it was written.")
     ] = True,
-    body_model: Annotated[
-        Path | None,
-        typer.Option(
-            help="The SMPL-X .npz that the dataset was made with.", show_default="the embedded CC0 body"
-        ),
-    ] = None,
+    body_model: BodyModelOfDataset = None,
     contact_regions: Annotated[
         Path | None,
         typer.Option(

@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from whacamole.cli.options import BodyModelOfDataset
+
 __all__ = ["page"]
 
 
@@ -16,12 +18,7 @@ def page(
     videos: Annotated[
         int, typer.Option(min=0, help="First make the videos of so many sequences that have none.")
     ] = 0,
-    body_model: Annotated[
-        Path | None,
-        typer.Option(
-            help="The SMPL-X .npz that the dataset was made with.", show_default="the embedded CC0 body"
-        ),
-    ] = None,
+    body_model: BodyModelOfDataset = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print errors only.")] = False,
 ) -> None:
     """Write DATASET/index.html: pictures, filters, statistics, findings of `check`, videos and 3D scenes.

@@ -6,6 +6,8 @@ from typing import Annotated, Any
 
 import typer
 
+from whacamole.cli.options import OwnBodyModel
+
 __all__ = ["plan"]
 
 
@@ -39,10 +41,7 @@ def plan(
     focal_mm: Annotated[
         str | None, typer.Option(help="Lens in millimetres: 35, or 24,50.", show_default="24,50")
     ] = None,
-    body_model: Annotated[
-        Path | None,
-        typer.Option(help="SMPL-X .npz of your own licence.", show_default="the embedded CC0 body"),
-    ] = None,
+    body_model: OwnBodyModel = None,
     seed: Annotated[int | None, typer.Option(help="The one seed of all choices.", show_default="0")] = None,
     limit: Annotated[
         int | None, typer.Option(help="Make at most so many plans.", show_default="no limit")

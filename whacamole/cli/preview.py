@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from whacamole.cli.options import BodyModelOfDataset
+
 __all__ = ["preview"]
 
 
@@ -29,12 +31,7 @@ def preview(
     limit: Annotated[
         int | None, typer.Option(min=1, help="At most so many sequences.", show_default="no limit")
     ] = None,
-    body_model: Annotated[
-        Path | None,
-        typer.Option(
-            help="The SMPL-X .npz that the dataset was made with.", show_default="the embedded CC0 body"
-        ),
-    ] = None,
+    body_model: BodyModelOfDataset = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print errors only.")] = False,
 ) -> None:
     """Draw labels over frames and numbers as colours, side by side with the scene from above."""

@@ -5,6 +5,8 @@ from typing import Annotated, Any
 
 import typer
 
+from whacamole.cli.options import OwnBodyModel
+
 __all__ = ["render"]
 
 
@@ -89,10 +91,7 @@ def render(
     image_format: Annotated[
         str | None, typer.Option(help="jpg, png or mp4, of the colour frames.", show_default="jpg")
     ] = None,
-    body_model: Annotated[
-        Path | None,
-        typer.Option(help="SMPL-X .npz of your own licence.", show_default="the embedded CC0 body"),
-    ] = None,
+    body_model: OwnBodyModel = None,
     textures: Annotated[
         Path | None,
         typer.Option(

@@ -5,6 +5,8 @@ from typing import Annotated, Literal
 
 import typer
 
+from whacamole.cli.options import BodyModelOfDataset
+
 __all__ = ["view"]
 
 
@@ -31,12 +33,7 @@ def view(
     full: Annotated[
         bool, typer.Option("--full", help="With --save: all vertices of the bodies, a larger file.")
     ] = False,
-    body_model: Annotated[
-        Path | None,
-        typer.Option(
-            help="The SMPL-X .npz that the dataset was made with.", show_default="the embedded CC0 body"
-        ),
-    ] = None,
+    body_model: BodyModelOfDataset = None,
     host: Annotated[
         str, typer.Option(help="Address to serve on; 0.0.0.0 lets other machines look.")
     ] = "127.0.0.1",
