@@ -6,8 +6,6 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from rich.console import Console
-from rich.progress import Progress
 
 from whacamole.dataset import Dataset, Sequence, open_dataset
 from whacamole.dataset.video import write_video
@@ -15,6 +13,7 @@ from whacamole.errors import DatasetError, WhacamoleError
 from whacamole.viewing.bodies import model_for
 from whacamole.viewing.panels import DEFAULT_LAYERS, Panels, layers_named
 from whacamole.viewing.places import Places
+from whacamole.viewing.progress import passing_bar
 
 __all__ = ["Made", "Wanted", "make_previews"]
 
@@ -72,8 +71,7 @@ def make_previews(
     chosen = [data[name] for name in ids] if ids else _first(data, limit)
     layers_named(wanted.layers, chosen[0])  # a dataset has the same passes throughout: told once
     made = Made()
-    console = Console(stderr=True)
-    with Progress(console=console, transient=True, disable=quiet or not console.is_terminal) as progress:
+    with passing_bar(quiet=quiet) as progress:
         task = progress.add_task("previews", total=sum(len(sequence) for sequence in chosen))
         for sequence in chosen:
             progress.update(task, description=sequence.id)

@@ -5,14 +5,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from rich.console import Console
-from rich.progress import Progress
-
 from whacamole.dataset import Dataset, Sequence, open_dataset
 from whacamole.errors import DatasetError, EvaluationError
 from whacamole.viewing.bodies import actors_of, model_for
 from whacamole.viewing.live import Viewer, serving
 from whacamole.viewing.prediction import Alignment, read_prediction
+from whacamole.viewing.progress import passing_bar
 from whacamole.viewing.recording import save_html
 from whacamole.viewing.scene3d import Look, Scene3D
 from whacamole.viewing.thinning import full_surface, thinned_surface
@@ -59,11 +57,6 @@ def _scene(request: Request, server: Any, sequence: Sequence, look: Look, *, who
     return Scene3D(server, sequence, actors_of(sequence, model), surface, prediction, look)
 
 
-def _progress(quiet: bool) -> Progress:
-    console = Console(stderr=True)
-    return Progress(console=console, transient=True, disable=quiet or not console.is_terminal)
-
-
 def save_view(request: Request, path: Path, *, full: bool = False, quiet: bool = False) -> int:
     """Write the sequence as one HTML file; return its size in bytes.
 
@@ -77,7 +70,7 @@ def save_view(request: Request, path: Path, *, full: bool = False, quiet: bool =
         BodyModelError: the body model cannot be used.
     """
     sequence = request.opened()[1]
-    with serving("127.0.0.1", 0) as server, _progress(quiet) as progress:
+    with serving("127.0.0.1", 0) as server, passing_bar(quiet=quiet) as progress:
         look = Look(image_width=320, rounded=True)
         scene = _scene(request, server, sequence, look, whole=full)
         task = progress.add_task(f"saving {sequence.id}", total=len(sequence))
