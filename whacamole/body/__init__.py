@@ -1,6 +1,6 @@
 """SMPL-X bodies: parameters, models, posing and the geometry that follows from it."""
 
-from whacamole.body.geometry import facing, mesh_volume, vertex_normals
+from whacamole.body.geometry import facing, mesh_volume, triangulated, unit_vectors, vertex_normals
 from whacamole.body.joints import (
     JOINT_GROUPS,
     JOINT_INDEX,
@@ -31,5 +31,7 @@ __all__ = [
     "Posed",
     "facing",
     "mesh_volume",
+    "triangulated",
+    "unit_vectors",
     "vertex_normals",
 ]

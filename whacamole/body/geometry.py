@@ -1,6 +1,6 @@
 """Geometry of posed bodies: where a person faces, normals, volume."""
 
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -10,6 +10,7 @@ from whacamole.body.joints import JOINT_INDEX
 
 FloatArray = npt.NDArray[np.float64]
 Float32Array = npt.NDArray[np.float32]
+Integer = TypeVar("Integer", bound=np.integer[Any])
 
 _TRUSTED = 0.15
 """Below this trust (trunk within 32° of straight down) the facing is taken from the frames around."""
@@ -34,9 +35,9 @@ def facing(joints: npt.ArrayLike) -> FloatArray:
     J = np.asarray(joints, dtype=np.float64)
     hips = J[:, [JOINT_INDEX["left_hip"], JOINT_INDEX["right_hip"]]]
     shoulders = J[:, [JOINT_INDEX["left_shoulder"], JOINT_INDEX["right_shoulder"]]]
-    up = _unit(shoulders.mean(axis=1) - hips.mean(axis=1))
-    left = _unit(hips[:, 0] - hips[:, 1]) + _unit(shoulders[:, 0] - shoulders[:, 1])
-    forward = _unit(np.cross(left, up))
+    up = unit_vectors(shoulders.mean(axis=1) - hips.mean(axis=1))
+    left = unit_vectors(hips[:, 0] - hips[:, 1]) + unit_vectors(shoulders[:, 0] - shoulders[:, 1])
+    forward = unit_vectors(np.cross(left, up))
     trust = 1.0 + up[:, 2]
     level = trust[:, None] * forward - forward[:, 2:] * up
     # All upside down: no frame to lean on, so the chest's own direction serves.
@@ -73,7 +74,15 @@ def mesh_volume(vertices: npt.ArrayLike, faces: npt.ArrayLike) -> FloatArray:
     return np.asarray(triple.sum(axis=(-1, -2)) / 6.0)
 
 
-def _unit(vectors: FloatArray) -> FloatArray:
+def triangulated(faces: npt.NDArray[Integer]) -> npt.NDArray[Integer]:
+    """Triangles (F, 3) as they are; quads (F, 4) cut in two, those with −1 last being triangles."""
+    if faces.shape[1] == 3:
+        return faces
+    return np.concatenate([faces[:, :3], faces[faces[:, 3] >= 0][:, [0, 2, 3]]])
+
+
+def unit_vectors(vectors: FloatArray) -> FloatArray:
+    """Vectors (…, k) at length 1; those without length stay as they are."""
     length = np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), np.finfo(np.float64).tiny)
     unit: FloatArray = vectors / length
     return unit

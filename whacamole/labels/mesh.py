@@ -12,13 +12,6 @@ def face_normals(vertices: Float64s, faces: Integers) -> Float64s:
     return normals
 
 
-def triangulated(faces: Integers) -> Integers:
-    """Triangles ``(F, 3)`` as they are; quads ``(F, 4)`` cut in two, those with -1 last being triangles."""
-    if faces.shape[1] == 3:
-        return faces
-    return np.concatenate([faces[:, :3], faces[faces[:, 3] >= 0][:, [0, 2, 3]]])
-
-
 def vertex_areas(vertices: Float64s, faces: Integers) -> Float64s:
     """``(V,)`` surface around each vertex, a third of its triangles [m²]; sums to the area of the mesh."""
     third = np.linalg.norm(face_normals(vertices, faces), axis=1) / 6

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from whacamole.body import vertex_normals
+from whacamole.body import unit_vectors, vertex_normals
 from whacamole.labels.arrays import Bools, Float64s, Integers
 from whacamole.labels.raster import Raster, RasterMesh, rasterize
 
@@ -73,7 +73,7 @@ def _surface(mesh: RasterMesh, raster: Raster, seen: Bools, K: Float64s) -> tupl
     vertices = np.asarray(mesh.vertices, dtype=np.float64)
     weights = _barycentric(points, vertices[corners])
     normals = (weights[..., None] * vertex_normals(vertices, mesh.faces)[corners]).sum(axis=1)
-    return _unit(normals), _unit(rays)
+    return unit_vectors(normals), unit_vectors(rays)
 
 
 def _barycentric(points: Float64s, corners: Float64s) -> Float64s:
@@ -82,9 +82,3 @@ def _barycentric(points: Float64s, corners: Float64s) -> Float64s:
     areas = np.linalg.norm(np.cross(to[:, [1, 2, 0]], to[:, [2, 0, 1]]), axis=-1)
     weights: Float64s = areas / np.maximum(areas.sum(axis=1, keepdims=True), np.finfo(np.float64).tiny)
     return weights
-
-
-def _unit(vectors: Float64s) -> Float64s:
-    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    unit: Float64s = vectors / np.maximum(length, np.finfo(np.float64).tiny)
-    return unit

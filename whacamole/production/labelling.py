@@ -11,13 +11,12 @@ from PIL import Image
 from camera_rigs import Plan
 from render_jobs import PASSES, Mesh
 from render_jobs.images import read_exr
-from whacamole.body import BodyModel
+from whacamole.body import BodyModel, triangulated
 from whacamole.dataset import SequenceLayout
 from whacamole.dataset.files import write_arrays, write_json
 from whacamole.labels import FrameImages, LabelledPerson, label_sequence, read_regions
 from whacamole.labels.camera import Film
 from whacamole.labels.cutout import Cutout
-from whacamole.labels.mesh import triangulated
 from whacamole.labels.people import WorldMesh
 from whacamole.recipe import Recipe
 from whacamole.take import Performer, Take

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from camera_rigs import World
 from render_jobs import Lamp, Sun
 from render_jobs.colour import linear, linear_image
-from whacamole.body import JOINT_INDEX
+from whacamole.body import JOINT_INDEX, unit_vectors
 from whacamole.stage import DAY, Stage
 from whacamole.wardrobe import skin_tone
 
@@ -108,8 +108,8 @@ def face_irradiance(stage: Stage, joints: Floats) -> Floats:
     """
     eyes = joints[:, [JOINT_INDEX["left_eye"], JOINT_INDEX["right_eye"]]]
     up = joints[:, JOINT_INDEX["head"]] - joints[:, JOINT_INDEX["neck"]]
-    left = _unit(eyes[:, 0] - eyes[:, 1])
-    ahead = _unit(np.cross(left, up))
+    left = unit_vectors(eyes[:, 0] - eyes[:, 1])
+    ahead = unit_vectors(np.cross(left, up))
     face = eyes.mean(axis=1) + 0.08 * ahead
     side = np.sin(np.radians(40.0)) * left
     normals = np.stack([ahead, *(np.cos(np.radians(40.0)) * ahead + s * side for s in (-1.0, 1.0))])
@@ -117,7 +117,7 @@ def face_irradiance(stage: Stage, joints: Floats) -> Floats:
     for light in stage.lights:
         towards, strength = _arriving(light, face)
         seen = ~_shaded(stage.world, face, towards, light)
-        direction = _unit(towards)
+        direction = unit_vectors(towards)
         cosine = np.clip(np.einsum("nti,ti->nt", normals, direction), 0.0, None).mean(axis=0)
         total += strength * seen * (cosine + _GROUND * np.clip(direction[:, 2], 0.0, None))
     return total + _thrown_back(stage)
@@ -127,12 +127,12 @@ def _arriving(light: Sun | Lamp, face: Floats) -> tuple[Floats, Floats]:
     """From each face towards the light (T, 3) [m], and the irradiance (T,) square to it."""
     tint = float(_LUMINANCE @ linear(light.color))
     if isinstance(light, Sun):
-        towards = np.broadcast_to(-FAR * _unit(np.asarray(light.direction, float)), face.shape)
+        towards = np.broadcast_to(-FAR * unit_vectors(np.asarray(light.direction, float)), face.shape)
         return towards, np.full(len(face), tint * light.strength)
     towards = np.asarray(light.position) - face
     distance = np.linalg.norm(towards, axis=1)
-    axis = _unit(np.asarray(light.target, float) - np.asarray(light.position, float))
-    along = np.clip(-_unit(towards) @ axis, 0.0, 1.0)
+    axis = unit_vectors(np.asarray(light.target, float) - np.asarray(light.position, float))
+    along = np.clip(-unit_vectors(towards) @ axis, 0.0, 1.0)
     if light.kind == "area":
         spread = along / np.pi
     else:
@@ -190,7 +190,3 @@ def _thrown_back(stage: Stage) -> float:
     )
     surface = 2.0 * (width * depth + width * height + depth * height)
     return float(flux * _ROOM / (surface * (1.0 - _ROOM)))
-
-
-def _unit(vector: Floats) -> Floats:
-    return np.asarray(vector / np.maximum(np.linalg.norm(vector, axis=-1, keepdims=True), 1e-9))

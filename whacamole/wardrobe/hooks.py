@@ -8,6 +8,8 @@ import numpy.typing as npt
 import scipy.sparse
 import scipy.spatial
 
+from whacamole.body import triangulated
+
 FloatArray = npt.NDArray[np.float64]
 Float32Array = npt.NDArray[np.float32]
 Int32Array = npt.NDArray[np.int32]
@@ -87,8 +89,7 @@ def hang(faces: Int32Array, cloth: FloatArray, below: FloatArray) -> Hooks:
     values = (weight[..., None] * shares[place]).ravel().astype(np.float32)
     rows = np.repeat(np.arange(len(below)), CARRIERS * corners.shape[1])
     mix = scipy.sparse.csr_array((values, (rows, corners[face].ravel())), shape=(len(below), len(cloth)))
-    quads = faces[faces[:, 3] >= 0]
-    triangles = np.concatenate([faces[:, :3], quads[:, [0, 2, 3]]])
+    triangles = triangulated(faces)
     ones = np.ones(triangles.size, dtype=np.float32)
     entries = (ones, (triangles.ravel(), np.repeat(np.arange(len(triangles)), 3)))
     touches = scipy.sparse.coo_array(entries, shape=(len(cloth), len(triangles))).tocsr()
