@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from render_jobs import Material
-from whacamole.stage.floor import CLEARANCE, Floor
-from whacamole.stage.shapes import Solid, Vector, box, joined, strip
+from whacamole.stage.floor import Floor
+from whacamole.stage.props import Finishes, Part, Prop, block, furnish
+from whacamole.stage.shapes import box, strip
 from whacamole.stage.stage import SetBuilder
 from whacamole.stage.textures import TEXTURES
 
@@ -29,18 +29,18 @@ FENCE_LENGTH = (4.0, 9.0)
 def lay_out_garden(build: SetBuilder, floor: Floor, rng: np.random.Generator) -> None:
     """Lay a path beside the people and stand the furniture of a park around them."""
     _walkway(build, floor, rng)
-    hedge = build.material("hedge", TEXTURES["leaves"], rng, metres=1.0, roughness=0.9)
-    blossom = build.material("blossom", TEXTURES["flowers"], rng, metres=1.5, roughness=0.9)
-    planks = build.material("planks", TEXTURES["wood"], rng, metres=0.5)
-    for index in range(int(rng.integers(4, 8))):
-        _stand(build, floor, rng, f"hedge-{index}", _drawn(rng, HEDGE), hedge, beyond=11.0)
-    for index in range(int(rng.integers(4, 8))):
-        _stand(build, floor, rng, f"flower-bed-{index}", _drawn(rng, BED), blossom, beyond=6.0)
-    for index in range(int(rng.integers(2, 5))):
-        _stand(build, floor, rng, f"bench-{index}", BENCH, planks, beyond=6.0)
-    for index in range(int(rng.integers(2, 5))):
-        size = (float(rng.uniform(*FENCE_LENGTH)), 0.06, 1.0)
-        _stand(build, floor, rng, f"fence-{index}", size, planks, beyond=13.0)
+    finishes: Finishes = {
+        "hedge": (build.material("hedge", TEXTURES["leaves"], rng, metres=1.0, roughness=0.9),),
+        "blossom": (build.material("blossom", TEXTURES["flowers"], rng, metres=1.5, roughness=0.9),),
+        "planks": (build.material("planks", TEXTURES["wood"], rng, metres=0.5),),
+    }
+    furnish(
+        build, floor, (block("hedge", "hedge", *HEDGE),), int(rng.integers(4, 8)), finishes, rng, beyond=11.0
+    )
+    beds = (block("flower-bed", "blossom", *BED),)
+    furnish(build, floor, beds, int(rng.integers(4, 8)), finishes, rng, beyond=6.0)
+    furnish(build, floor, (_bench,), int(rng.integers(2, 5)), finishes, rng, beyond=6.0)
+    furnish(build, floor, (_fence,), int(rng.integers(2, 5)), finishes, rng, beyond=13.0)
 
 
 def _walkway(build: SetBuilder, floor: Floor, rng: np.random.Generator) -> None:
@@ -56,47 +56,21 @@ def _walkway(build: SetBuilder, floor: Floor, rng: np.random.Generator) -> None:
         floor.reserve(normal * offset + step * along, width / 2.0)
 
 
-def _stand(
-    build: SetBuilder,
-    floor: Floor,
-    rng: np.random.Generator,
-    name: str,
-    size: Vector,
-    material: Material,
-    *,
-    beyond: float,
-) -> None:
-    """Put one piece where there is room; leave it out where there is none."""
-    place = floor.spot(rng, float(np.hypot(size[0], size[1]) / 2.0), beyond, CLEARANCE)
-    yaw = float(rng.uniform(0.0, np.pi))
-    if place is None:
-        return
-    kind = name.rsplit("-", 1)[0]
-    pieces = {"bench": _bench, "fence": _fence}.get(kind)
-    solid = box((0.0, 0.0, 0.0), size) if pieces is None else pieces(size)
-    build.add_solid(name, solid, (*place, 0.0), size, material, yaw)
-
-
-def _bench(size: Vector) -> Solid:
-    """A seat and a back of planks on two ends, within ``size`` about the middle of its base."""
-    width, depth, height = size
+def _bench(rng: np.random.Generator) -> Prop:
+    """A seat and a back of planks on two ends."""
+    width, depth, height = BENCH
     aside, rear = width / 2 - 0.03, depth / 2 - 0.0125
     ends = [box((side * aside, 0.0, 0.0), (0.06, depth, 0.41)) for side in (-1.0, 1.0)]
     posts = [box((side * aside, rear, 0.45), (0.06, 0.025, height - 0.45)) for side in (-1.0, 1.0)]
     seat = box((0.0, 0.0, 0.41), (width, depth, 0.04))
     backs = [box((0.0, rear, z), (width, 0.025, 0.1)) for z in (0.58, height - 0.1)]
-    return joined([*ends, *posts, seat, *backs])
+    return Prop("bench", BENCH, tuple(Part(solid, "planks") for solid in (*ends, *posts, seat, *backs)))
 
 
-def _fence(size: Vector) -> Solid:
-    """Posts a metre and a half apart with three rails, within ``size`` about the middle of its base."""
-    length, depth, height = size
+def _fence(rng: np.random.Generator) -> Prop:
+    """Posts a metre and a half apart with three rails."""
+    length, depth, height = float(rng.uniform(*FENCE_LENGTH)), 0.06, 1.0
     spots = np.linspace(-length / 2 + 0.04, length / 2 - 0.04, max(2, round(length / 1.5)))
     posts = [box((float(x), 0.0, 0.0), (0.08, depth, height)) for x in spots]
     rails = [box((0.0, 0.0, z), (length, 0.03, 0.1)) for z in (0.2, 0.5, 0.8)]
-    return joined([*posts, *rails])
-
-
-def _drawn(rng: np.random.Generator, spans: tuple[tuple[float, float], ...]) -> Vector:
-    width, depth, height = (float(rng.uniform(*span)) for span in spans)
-    return width, depth, height
+    return Prop("fence", (length, depth, height), tuple(Part(solid, "planks") for solid in (*posts, *rails)))

@@ -5,10 +5,19 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from render_jobs import Environment, Lamp, Material
+from render_jobs import Environment, Lamp
 from whacamole.stage.floor import CLEARANCE, Floor
 from whacamole.stage.garden import lay_out_garden
-from whacamole.stage.props import furnish, plant_trees, prop_materials
+from whacamole.stage.props import (
+    MARKET,
+    ROOF,
+    STREET,
+    Finishes,
+    block,
+    furnish,
+    paint_finishes,
+    plant_trees,
+)
 from whacamole.stage.stage import SetBuilder, Stage
 from whacamole.stage.surroundings import daylight, ground, house_fronts
 from whacamole.stage.textures import TEXTURES
@@ -16,7 +25,6 @@ from whacamole.stage.textures import TEXTURES
 __all__ = ["courtyard", "market", "night_street", "park", "plaza", "rooftop"]
 
 Paths = NDArray[np.float64]
-STREET_FURNITURE = ("crate", "planter", "column", "bench", "wall", "bollard")
 
 
 def plaza(rng: np.random.Generator, paths: Paths, folder: Path | None) -> Stage:
@@ -26,7 +34,7 @@ def plaza(rng: np.random.Generator, paths: Paths, folder: Path | None) -> Stage:
     ground(build, floor, texture, float(rng.uniform(2.4, 3.6)), rng)
     sun, sky = daylight(rng, (22.0, 62.0))
     house_fronts(build, floor, _some_sides(rng, 0.8), rng, sun)
-    furnish(build, floor, STREET_FURNITURE, int(rng.integers(9, 16)), _masonry(build, rng), rng)
+    furnish(build, floor, STREET, int(rng.integers(9, 16)), _masonry(build, rng), rng)
     return build.stage("plaza", (sun,), sky, exposure=0.6)
 
 
@@ -35,7 +43,8 @@ def park(rng: np.random.Generator, paths: Paths, folder: Path | None) -> Stage:
     build, floor = SetBuilder(folder), Floor(paths)
     ground(build, floor, "grass", float(rng.uniform(3.0, 4.5)), rng)
     lay_out_garden(build, floor, rng)
-    furnish(build, floor, ("planter", "wall"), int(rng.integers(2, 5)), _masonry(build, rng), rng)
+    walls = (block("wall", "stone", (1.5, 3.0), (0.2, 0.3), (0.9, 1.8)),)
+    furnish(build, floor, walls, int(rng.integers(2, 5)), _masonry(build, rng), rng)
     rings = ((int(rng.integers(6, 10)), CLEARANCE + 1.0, 14.0), (int(rng.integers(10, 16)), 14.0, 30.0))
     plant_trees(build, floor, rings, rng)
     sun, sky = daylight(rng, (25.0, 65.0))
@@ -48,9 +57,11 @@ def market(rng: np.random.Generator, paths: Paths, folder: Path | None) -> Stage
     ground(build, floor, str(rng.choice(["brick", "paving", "concrete"])), float(rng.uniform(2.0, 3.0)), rng)
     sun, sky = daylight(rng, (12.0, 28.0))
     house_fronts(build, floor, _some_sides(rng, 0.9), rng, sun)
-    surfaces = (("cloth", 1.0), ("cloth", 0.7), ("wood", 1.0), ("cloth", 1.3), ("wood", 0.7))
-    kinds = ("stall", "stall", "crate", "barrel", "crate", "column")
-    furnish(build, floor, kinds, int(rng.integers(14, 22)), prop_materials(build, surfaces, rng), rng)
+    surfaces = {
+        "cloth": (("cloth", 1.0), ("cloth", 0.7), ("cloth", 1.3)), "wood": (("wood", 1.0), ("wood", 0.7)),
+        "stone": (("concrete", 1.4),),
+    }  # fmt: skip
+    furnish(build, floor, MARKET, int(rng.integers(14, 22)), paint_finishes(build, surfaces, rng), rng)
     return build.stage("market", (sun,), sky, exposure=0.9)
 
 
@@ -59,7 +70,7 @@ def courtyard(rng: np.random.Generator, paths: Paths, folder: Path | None) -> St
     build, floor = SetBuilder(folder), Floor(paths)
     ground(build, floor, str(rng.choice(["paving", "concrete", "brick"])), float(rng.uniform(2.0, 3.5)), rng)
     house_fronts(build, floor, np.ones(4, bool), rng)
-    furnish(build, floor, STREET_FURNITURE, int(rng.integers(7, 13)), _masonry(build, rng), rng)
+    furnish(build, floor, STREET, int(rng.integers(7, 13)), _masonry(build, rng), rng)
     light = Environment(
         kind="hdri",
         hdri=str(rng.choice(["courtyard", "city", "forest"])),  # type: ignore[arg-type]
@@ -74,11 +85,8 @@ def rooftop(rng: np.random.Generator, paths: Paths, folder: Path | None) -> Stag
     """A flat roof at sunrise or sunset: parapets, vents, the light of an HDRI from low down."""
     build, floor = SetBuilder(folder), Floor(paths)
     ground(build, floor, str(rng.choice(["concrete", "asphalt", "wood"])), float(rng.uniform(2.5, 4.0)), rng)
-    surfaces = (("concrete", 1.4), ("plaster", 2.0), ("brick", 1.4))
-    furnish(
-        build, floor, ("vent", "vent", "wall", "column", "crate"), int(rng.integers(10, 16)),
-        prop_materials(build, surfaces, rng), rng,
-    )  # fmt: skip
+    surfaces = {"stone": (("concrete", 1.4), ("plaster", 2.0), ("brick", 1.4)), "wood": (("wood", 1.0),)}
+    furnish(build, floor, ROOF, int(rng.integers(10, 16)), paint_finishes(build, surfaces, rng), rng)
     parapet = build.material("parapet", TEXTURES["brick"], rng, metres=1.6)
     reach = floor.reach + float(rng.uniform(12.0, 15.0))
     for index, (x, y) in enumerate(((1, 0), (0, 1), (-1, 0), (0, -1))):
@@ -98,7 +106,7 @@ def night_street(rng: np.random.Generator, paths: Paths, folder: Path | None) ->
     build, floor = SetBuilder(folder), Floor(paths)
     ground(build, floor, str(rng.choice(["asphalt", "paving"])), float(rng.uniform(2.4, 3.4)), rng)
     house_fronts(build, floor, _some_sides(rng, 0.8), rng)
-    furnish(build, floor, STREET_FURNITURE, int(rng.integers(8, 14)), _masonry(build, rng), rng)
+    furnish(build, floor, STREET, int(rng.integers(8, 14)), _masonry(build, rng), rng)
     warm = (1.0, float(rng.uniform(0.84, 0.93)), float(rng.uniform(0.66, 0.8)))
     night = Environment(kind="color", color=(0.10, 0.13, 0.22), strength=0.6)
     return build.stage("night-street", _street_lamps(build, floor, warm, rng), night, exposure=0.3)
@@ -130,9 +138,9 @@ def _street_lamps(
     return tuple(lamps)
 
 
-def _masonry(build: SetBuilder, rng: np.random.Generator) -> list[Material]:
-    surfaces = (("wood", 1.2), ("concrete", 1.5), ("brick", 1.6), ("plaster", 2.0), ("wood", 0.8))
-    return prop_materials(build, surfaces, rng)
+def _masonry(build: SetBuilder, rng: np.random.Generator) -> Finishes:
+    stone = (("concrete", 1.5), ("brick", 1.6), ("plaster", 2.0))
+    return paint_finishes(build, {"stone": stone, "wood": (("wood", 1.2), ("wood", 0.8))}, rng)
 
 
 def _some_sides(rng: np.random.Generator, share: float) -> NDArray[np.bool_]:

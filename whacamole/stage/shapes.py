@@ -5,8 +5,23 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
-__all__ = ["Solid", "Vector", "box", "cylinder", "ground_grid", "joined", "strip", "turned"]
+__all__ = [
+    "Solid",
+    "Vector",
+    "bevelled_box",
+    "box",
+    "cylinder",
+    "ground_grid",
+    "joined",
+    "lathe",
+    "moved",
+    "prism",
+    "strip",
+    "tilted",
+    "turned",
+]
 
 
 Vector = tuple[float, float, float]
@@ -33,14 +48,39 @@ def turned(solid: Solid, place: Vector, yaw: float) -> Solid:
     return replace(solid, vertices=vertices.astype(np.float32))
 
 
+def moved(solid: Solid, offset: Vector) -> Solid:
+    """Return a solid at another place."""
+    return replace(solid, vertices=(solid.vertices + np.asarray(offset)).astype(np.float32))
+
+
+def tilted(solid: Solid, rotvec: Vector, about: Vector = (0.0, 0.0, 0.0)) -> Solid:
+    """Return a solid turned by a rotation vector [rad] about a point."""
+    turn = Rotation.from_rotvec(rotvec).as_matrix()
+    vertices = (solid.vertices - np.asarray(about)) @ turn.T + np.asarray(about)
+    return replace(solid, vertices=vertices.astype(np.float32))
+
+
 def joined(solids: Sequence[Solid]) -> Solid:
-    """Return solids with faces of one kind as one."""
+    """Return solids as one; where some are of triangles, all of it is."""
+    if len({solid.faces.shape[1] for solid in solids}) > 1:
+        solids = [_in_triangles(solid) for solid in solids]
     first = np.cumsum([0, *(len(solid.vertices) for solid in solids[:-1])])
     faces = [solid.faces + start for solid, start in zip(solids, first, strict=True)]
     return Solid(
         np.concatenate([solid.vertices for solid in solids]),
         np.concatenate(faces).astype(np.int32),
         np.concatenate([solid.uv for solid in solids]),
+    )
+
+
+def _in_triangles(solid: Solid) -> Solid:
+    if solid.faces.shape[1] == 3:
+        return solid
+    halves = [[0, 1, 2], [0, 2, 3]]
+    return Solid(
+        solid.vertices,
+        np.concatenate([solid.faces[:, half] for half in halves]),
+        np.concatenate([solid.uv[:, half] for half in halves]),
     )
 
 
@@ -91,6 +131,73 @@ def cylinder(center: Vector, radius: float, height: float, sides: int = 24) -> S
         (vertices + np.asarray(center)).astype(np.float32),
         np.concatenate([lower, upper, lid]).astype(np.int32),
         np.concatenate([*uv, vertices[lid][:, :, :2]]).astype(np.float32),
+    )
+
+
+def prism(outline: Sequence[tuple[float, float]], height: float) -> Solid:
+    """Return an upright prism on z = 0 over a convex outline (N ≥ 3, counter-clockwise seen from above)."""
+    return _lathe_of(np.asarray(outline, dtype=np.float64), [(1.0, 0.0), (1.0, height)])
+
+
+def lathe(profile: Sequence[tuple[float, float]], sides: int = 16) -> Solid:
+    """Return a round closed solid; ``profile`` is (radius, height) [m] from its underside to its top."""
+    angle = np.arange(sides) * (2.0 * np.pi / sides)
+    return _lathe_of(np.stack([np.cos(angle), np.sin(angle)], axis=1), profile)
+
+
+def bevelled_box(size: Vector, bevel: float) -> Solid:
+    """Return a box about the middle of its base, ``bevel`` [m] cut off its upright and its upper edges."""
+    x, y = size[0] / 2.0, size[1] / 2.0
+    cut = [(x - bevel, -y), (x, bevel - y), (x, y - bevel), (x - bevel, y),
+           (bevel - x, y), (-x, y - bevel), (-x, bevel - y), (bevel - x, -y)]  # fmt: skip
+    lower = np.asarray(cut)
+    inner = lower * [(x - bevel) / x, (y - bevel) / y]
+    return _stacked([(lower, 0.0), (lower, size[2] - bevel), (inner, size[2])])
+
+
+def _lathe_of(outline: NDArray[np.float64], profile: Sequence[tuple[float, float]]) -> Solid:
+    """Return a closed solid; its sections are an ``outline`` (N, 2) by the profile's (scale, height)."""
+    return _stacked([(outline * scale, height) for scale, height in profile])
+
+
+def _stacked(sections: Sequence[tuple[NDArray[np.float64], float]]) -> Solid:
+    """Return level sections (N, 2) of one number of corners, lowest first, skinned and closed by lids."""
+    corners = len(sections[0][0])
+    rings = np.stack([np.column_stack([xy, np.full(corners, z)]) for xy, z in sections])
+    vertices = np.concatenate([rings.reshape(-1, 3), rings[[0, -1]].mean(axis=1)])
+    here = np.arange(corners)
+    there = (here + 1) % corners
+    # Metres around the widest section, and up the first corner's line, so that a texture keeps its scale.
+    widest = max(rings, key=lambda ring: float(np.ptp(ring[:, 0])))
+    around = np.concatenate([[0.0], np.linalg.norm(np.roll(widest, -1, axis=0) - widest, axis=1).cumsum()])
+    up = np.concatenate([[0.0], np.linalg.norm(np.diff(rings[:, 0], axis=0), axis=1).cumsum()])
+    faces, uv = [], []
+    for level in range(len(rings) - 1):
+        low, high = level * corners, (level + 1) * corners
+        left, right = around[here], around[here + 1]
+        bottom, top = np.full(corners, up[level]), np.full(corners, up[level + 1])
+        faces += [
+            np.stack([low + here, low + there, high + there], axis=1),
+            np.stack([low + here, high + there, high + here], axis=1),
+        ]
+        uv += [
+            np.stack(
+                [np.stack([left, bottom], 1), np.stack([right, bottom], 1), np.stack([right, top], 1)], axis=1
+            ),
+            np.stack(
+                [np.stack([left, bottom], 1), np.stack([right, top], 1), np.stack([left, top], 1)], axis=1
+            ),
+        ]
+    middle = len(rings) * corners
+    last = (len(rings) - 1) * corners
+    lids = [
+        np.stack([there, here, np.full(corners, middle)], axis=1),
+        np.stack([last + here, last + there, np.full(corners, middle + 1)], axis=1),
+    ]
+    return Solid(
+        vertices.astype(np.float32),
+        np.concatenate([*faces, *lids]).astype(np.int32),
+        np.concatenate([*uv, *(vertices[lid][:, :, :2] for lid in lids)]).astype(np.float32),
     )
 
 

@@ -10,7 +10,7 @@ from PIL import Image
 
 from camera_rigs import Obstacle, World
 from render_jobs import Environment, Lamp, Material, Mesh, Sun
-from whacamole.stage.shapes import Solid, Vector, box, cylinder, turned
+from whacamole.stage.shapes import Solid, Vector, box, cylinder
 
 __all__ = ["SetBuilder", "Stage"]
 
@@ -91,11 +91,18 @@ class SetBuilder:
         """Put a box on the set; ``base`` is the middle of its underside, ``yaw`` turns it about z [rad]."""
         self.add(name, box(base, size, yaw), material, _around(name, base, size, yaw))
 
-    def add_solid(
-        self, name: str, solid: Solid, base: Vector, size: Vector, material: Material, yaw: float
-    ) -> None:
-        """Put a solid that fills a box of ``size`` about the middle of its underside on the set."""
-        self.add(name, turned(solid, base, yaw), material, _around(name, base, size, yaw))
+    def keep_out(self, name: str, base: Vector, size: Vector, yaw: float) -> None:
+        """Keep people and cameras out of a box of ``size`` about the middle of its underside."""
+        self.obstacles.append(_around(name, base, size, yaw))
+
+    def plain(
+        self, name: str, color: Vector, *, roughness: float = 0.6, metallic: float = 0.0, glow: float = 0.0
+    ) -> Material:
+        """Return a material of one linear colour, shining with ``glow`` times that colour."""
+        return Material(
+            name=name, base_color=color, roughness=roughness, metallic=metallic,
+            emission=color, emission_strength=glow,
+        )  # fmt: skip
 
     def add_cylinder(self, name: str, base: Vector, radius: float, height: float, material: Material) -> None:
         """Put an upright cylinder on the set; ``base`` is the middle of its underside."""
