@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from render_jobs import Environment
 from whacamole.stage.floor import Floor
 from whacamole.stage.props import HALL, LIVING_ROOM, WAREHOUSE, furnish, paint_finishes
+from whacamole.stage.rooms import ceiling_lamps, room
 from whacamole.stage.stage import SetBuilder, Stage
-from whacamole.stage.surroundings import ceiling_lamps, room
 
 __all__ = ["living_room", "sports_hall", "warehouse"]
 

@@ -1,0 +1,61 @@
+"""Grounds: paving, asphalt, gravel, grass, concrete."""
+
+import numpy as np
+
+from whacamole.stage.textures.painting import Image, cells, clipped, masonry, noise, strew, tinted, tones
+
+__all__ = ["asphalt", "concrete", "grass", "gravel", "paving"]
+
+AUTUMN = ((0.55, 0.42, 0.18), (0.42, 0.24, 0.10), (0.62, 0.54, 0.30), (0.30, 0.22, 0.12))
+
+
+DAISIES = ((0.88, 0.87, 0.80), (0.90, 0.82, 0.30), (0.85, 0.80, 0.86))
+
+
+def paving(rng: np.random.Generator, size: int = 512) -> Image:
+    """Square or staggered slabs."""
+    rows = int(rng.integers(4, 9))
+    base = np.array([0.56, 0.53, 0.49]) * rng.uniform(0.75, 1.15) + rng.normal(0.0, 0.02, 3)
+    return masonry(
+        rng, size, rows - rows % 2, rows - rows % 2,
+        color=(base[0], base[1], base[2]), joint=(0.33, 0.32, 0.30),
+        stagger=float(rng.choice([0.0, 0.5])), spread=0.09, joint_width=1.5,
+    )  # fmt: skip
+
+
+def asphalt(rng: np.random.Generator, size: int = 512) -> Image:
+    """Dark, coarse-grained, with worn patches."""
+    ground = tinted(rng, size, (0.26, 0.26, 0.27), 0.12)
+    stones = np.clip(noise(rng, size, 0.2, 60.0) - 1.1, 0.0, 1.0)[..., None]
+    return clipped(ground + 0.25 * stones)
+
+
+def grass(rng: np.random.Generator, size: int = 512) -> Image:
+    """Short grass in tufts, with dry and bare patches, daisies and fallen leaves."""
+    blades, tufts, patches = noise(rng, size, 0.5, 30.0), noise(rng, size, 0.9, 12.0), noise(rng, size, 1.8)
+    green, dry, earth = (np.array(c) for c in ([0.22, 0.31, 0.12], [0.46, 0.43, 0.24], [0.30, 0.23, 0.16]))
+    mix = np.clip(0.35 + 0.28 * patches, 0.0, 1.0)[..., None]
+    shade = 1.0 + 0.22 * blades + 0.24 * np.clip(tufts, -1.5, 1.8)
+    image = ((1.0 - mix) * green + mix * dry) * shade[..., None]
+    worn = np.clip(3.0 * (noise(rng, size, 1.2, 3.0) - 1.5), 0.0, 1.0)[..., None]
+    image = (1.0 - worn) * image + worn * earth * (1.0 + 0.15 * blades)[..., None]
+    strew(rng, image, size * size // 1000, AUTUMN, (2.5, 6.5), 0.55)
+    strew(rng, image, size * size // 1500, DAISIES, (1.6, 2.6), 1.0)
+    return clipped(image)
+
+
+def gravel(rng: np.random.Generator, size: int = 512) -> Image:
+    """Trodden gravel: pale, with stones of many sizes and damp patches."""
+    pale = np.array([0.60, 0.55, 0.46]) * rng.uniform(0.85, 1.1)
+    image = pale * (1.0 + 0.10 * noise(rng, size, 1.8) + 0.10 * noise(rng, size, 0.3, 60.0))[..., None]
+    strew(rng, image, size * size // 500, tones(pale, rng.uniform(0.55, 1.35, 4)), (1.5, 5.0), 0.8)
+    return clipped(image)
+
+
+def concrete(rng: np.random.Generator, size: int = 512) -> Image:
+    """Cast panels with stains."""
+    index, edge = cells(size, 2, 2, 0.0)
+    tone = rng.normal(1.0, 0.05, 4)[index]
+    grey = rng.uniform(0.45, 0.66)
+    panel = tinted(rng, size, (grey, grey, grey * 0.97), 0.07) * tone[..., None]
+    return clipped(panel * (0.62 + 0.38 * np.clip(edge / 2.5, 0.0, 1.0))[..., None])

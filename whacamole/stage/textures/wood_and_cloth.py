@@ -1,0 +1,40 @@
+"""Wood and cloth."""
+
+import numpy as np
+
+from whacamole.stage.textures.painting import Image, clipped, dye, noise
+
+__all__ = ["cloth", "wood"]
+
+BOARDS = 3
+
+
+def wood(rng: np.random.Generator, size: int = 512) -> Image:
+    """Planks along x with grain, each of boards of its own tone that meet at a joint."""
+    planks = int(rng.integers(4, 8))
+    y, x = np.mgrid[0:size, 0:size] / size
+    plank = np.floor(y * planks).astype(np.int64)
+    warp = 0.04 * noise(rng, size, 2.0)
+    rings = np.sin(2.0 * np.pi * (y * planks * 6 + warp * 9 + np.sin(2 * np.pi * x) * 0.3 + plank * 0.37))
+    along = (x * BOARDS + rng.uniform(0.0, 1.0, planks)[plank]) % BOARDS
+    board = plank * BOARDS + np.floor(along).astype(np.int64)
+    grain = 0.10 * rings + 0.10 * noise(rng, size, 0.5, 24.0)
+    tone = rng.normal(1.0, 0.13, planks * BOARDS)[board] * (1.0 + grain)
+    base = np.array([0.48, 0.34, 0.21]) * rng.uniform(0.7, 1.25)
+    gap = np.minimum(y * planks % 1.0, 1.0 - y * planks % 1.0) * size / planks
+    joint = np.minimum(along % 1.0, 1.0 - along % 1.0) * size / BOARDS
+    edge = np.clip(np.minimum(gap, joint) / 2.0, 0.0, 1.0)
+    return clipped(base * (tone * (0.4 + 0.6 * edge))[..., None])
+
+
+def cloth(rng: np.random.Generator, size: int = 512) -> Image:
+    """Woven stripes or checks."""
+    y, x = np.mgrid[0:size, 0:size] / size
+    first, second = dye(rng), dye(rng)
+    bands = int(rng.integers(3, 9))
+    mix = (np.floor(x * bands * 2) % 2) * 0.7
+    if rng.random() < 0.5:
+        mix = 0.5 * mix + 0.5 * (np.floor(y * bands * 2) % 2)
+    weave = 1.0 + 0.06 * np.sign(np.sin(x * size * np.pi / 2) * np.sin(y * size * np.pi / 2))
+    color = mix[..., None] * first + (1.0 - mix[..., None]) * second
+    return clipped(color * (weave * (1.0 + 0.05 * noise(rng, size, 1.2)))[..., None])
