@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 
 from whacamole.stage.indoors import living_room, sports_hall, warehouse
 from whacamole.stage.light import DAY, Hdri, lit_by
-from whacamole.stage.outdoors import courtyard, market, night_street, park, plaza, rooftop
+from whacamole.stage.outdoors import courtyard, market, night_street, plaza, rooftop
 from whacamole.stage.own import OwnStage
+from whacamole.stage.parks import park
 from whacamole.stage.places import Places, find_places
 from whacamole.stage.stage import SetBuilder, Stage
 from whacamole.stage.survey import Ground

@@ -6,23 +6,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from render_jobs import Environment, Lamp
-from whacamole.stage.floor import CLEARANCE, Floor
-from whacamole.stage.garden import lay_out_garden
+from whacamole.stage.floor import Floor
 from whacamole.stage.props import (
     MARKET,
     ROOF,
     STREET,
     Finishes,
-    block,
     furnish,
     paint_finishes,
-    plant_trees,
 )
 from whacamole.stage.stage import SetBuilder, Stage
 from whacamole.stage.surroundings import daylight, ground, house_fronts
 from whacamole.stage.textures import TEXTURES
 
-__all__ = ["courtyard", "market", "night_street", "park", "plaza", "rooftop"]
+__all__ = ["courtyard", "market", "night_street", "plaza", "rooftop"]
 
 Paths = NDArray[np.float64]
 
@@ -36,19 +33,6 @@ def plaza(rng: np.random.Generator, paths: Paths, folder: Path | None) -> Stage:
     house_fronts(build, floor, _some_sides(rng, 0.8), rng, sun)
     furnish(build, floor, STREET, int(rng.integers(9, 16)), _masonry(build, rng), rng)
     return build.stage("plaza", (sun,), sky, exposure=0.6)
-
-
-def park(rng: np.random.Generator, paths: Paths, folder: Path | None) -> Stage:
-    """A meadow with trees near and far, a gravel path, hedges, flower beds, benches and fences."""
-    build, floor = SetBuilder(folder), Floor(paths)
-    ground(build, floor, "grass", float(rng.uniform(3.0, 4.5)), rng)
-    lay_out_garden(build, floor, rng)
-    walls = (block("wall", "stone", (1.5, 3.0), (0.2, 0.3), (0.9, 1.8)),)
-    furnish(build, floor, walls, int(rng.integers(2, 5)), _masonry(build, rng), rng)
-    rings = ((int(rng.integers(6, 10)), CLEARANCE + 1.0, 14.0), (int(rng.integers(10, 16)), 14.0, 30.0))
-    plant_trees(build, floor, rings, rng)
-    sun, sky = daylight(rng, (25.0, 65.0))
-    return build.stage("park", (sun,), sky, exposure=0.7)
 
 
 def market(rng: np.random.Generator, paths: Paths, folder: Path | None) -> Stage:
