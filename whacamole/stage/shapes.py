@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
 __all__ = [
@@ -12,6 +12,7 @@ __all__ = [
     "Vector",
     "bevelled_box",
     "box",
+    "boxes",
     "cylinder",
     "ground_grid",
     "joined",
@@ -104,13 +105,36 @@ def box(center: Vector, size: Vector, yaw: float = 0.0) -> Solid:
     """Return a box; ``center`` is the middle of its *base*, ``yaw`` turns it about z [rad]."""
     sx, sy, sz = size
     corners = np.array([(x, y, z) for z in (0.0, sz) for y in (-sy / 2, sy / 2) for x in (-sx / 2, sx / 2)])
-    faces = np.array(
-        [[0, 1, 5, 4], [1, 3, 7, 5], [3, 2, 6, 7], [2, 0, 4, 6], [4, 5, 7, 6], [2, 3, 1, 0]], np.int32
-    )
     extents = [(sx, sz), (sy, sz), (sx, sz), (sy, sz), (sx, sy), (sx, sy)]
     uv = np.array([[(0, 0), (w, 0), (w, h), (0, h)] for w, h in extents])
     vertices = corners @ _rotation(yaw).T + np.asarray(center)
-    return Solid(vertices.astype(np.float32), faces, uv.astype(np.float32))
+    return Solid(vertices.astype(np.float32), _BOX_FACES, uv.astype(np.float32))
+
+
+_CORNERS = np.array([(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)], np.bool_)
+_BOX_FACES = np.array(
+    [[0, 1, 5, 4], [1, 3, 7, 5], [3, 2, 6, 7], [2, 0, 4, 6], [4, 5, 7, 6], [2, 3, 1, 0]], np.int32
+)
+_BOX_UV_AXES = np.array([(0, 2), (1, 2), (0, 2), (1, 2), (0, 1), (0, 1)])
+
+
+def boxes(low: ArrayLike, high: ArrayLike, *, backless: bool = False) -> Solid:
+    """Return many level boxes as one solid; a texture runs on from one to its neighbour.
+
+    Args:
+        low, high: (N, 3) opposite corners [m]; either may be (3,).
+        backless: leave out the faces towards +y, which nobody sees of what lies on a wall.
+    """
+    bottom, top = np.broadcast_arrays(np.atleast_2d(low), np.atleast_2d(high))
+    corners = np.where(_CORNERS, top[:, None], bottom[:, None])
+    sides = [0, 1, 3, 4, 5] if backless else [0, 1, 2, 3, 4, 5]
+    faces = _BOX_FACES[sides]
+    uv = np.take_along_axis(corners[:, faces], _BOX_UV_AXES[sides][None, :, None], axis=-1)
+    return Solid(
+        corners.reshape(-1, 3).astype(np.float32),
+        (faces + 8 * np.arange(len(corners))[:, None, None]).reshape(-1, 4).astype(np.int32),
+        uv.reshape(-1, 4, 2).astype(np.float32),
+    )
 
 
 def cylinder(center: Vector, radius: float, height: float, sides: int = 24) -> Solid:

@@ -12,6 +12,7 @@ from whacamole.stage.shapes import (
     Solid,
     bevelled_box,
     box,
+    boxes,
     cylinder,
     ground_grid,
     joined,
@@ -70,10 +71,23 @@ def test_solids_are_closed_and_have_their_volume(solid: Solid, volume: float | N
         assert surface.volume == pytest.approx(volume, rel=1e-5)
 
 
+def test_many_boxes_are_as_many_single_ones_and_their_texture_runs_on() -> None:
+    low, high = np.array([[0.0, 0, 0], [2, 0, 0]]), np.array([[2.0, 1, 1], [3, 2, 4]])
+    solid = boxes(low, high)
+    surface = _surface(solid)
+    assert surface.is_watertight
+    assert surface.volume == pytest.approx(2.0 + 8.0)
+    assert _surface(boxes(low, high, backless=True)).area == pytest.approx(surface.area - 2.0 - 4.0)
+    front = solid.vertices[solid.faces[[0, 6]]]
+    np.testing.assert_array_equal(solid.uv[[0, 6]], front[:, :, [0, 2]])
+
+
 TURNED = strip(np.array([3.0, 1.0]), np.array([0.6, 0.8]), 7.0, 2.0, 0.1)
 
 
-@pytest.mark.parametrize("solid", [box((0, 0, 0), (2.0, 3.0, 1.0)), ground_grid(5.0, 4), TURNED])
+@pytest.mark.parametrize(
+    "solid", [box((0, 0, 0), (2.0, 3.0, 1.0)), boxes((0, 0, 0), (2.0, 3.0, 1.0)), ground_grid(5.0, 4), TURNED]
+)
 def test_uv_are_in_metres(solid: Solid) -> None:
     edges = np.linalg.norm(np.diff(solid.vertices[solid.faces], axis=1), axis=2)
     np.testing.assert_allclose(np.linalg.norm(np.diff(solid.uv, axis=1), axis=2), edges, rtol=1e-5)
