@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from render_jobs import Environment, Lamp
 from whacamole.stage.floor import Floor
+from whacamole.stage.horizon import horizon
 from whacamole.stage.props import (
     MARKET,
     ROOF,
@@ -32,6 +33,7 @@ def plaza(rng: np.random.Generator, paths: Paths, folder: Path | None) -> Stage:
     sun, sky = daylight(rng, (22.0, 62.0))
     house_fronts(build, floor, _some_sides(rng, 0.8), rng, sun)
     furnish(build, floor, STREET, int(rng.integers(9, 16)), _masonry(build, rng), rng)
+    horizon(build, floor, "town", rng)
     return build.stage("plaza", (sun,), sky, exposure=0.6)
 
 
@@ -46,6 +48,7 @@ def market(rng: np.random.Generator, paths: Paths, folder: Path | None) -> Stage
         "stone": (("concrete", 1.4),),
     }  # fmt: skip
     furnish(build, floor, MARKET, int(rng.integers(14, 22)), paint_finishes(build, surfaces, rng), rng)
+    horizon(build, floor, "town", rng)
     return build.stage("market", (sun,), sky, exposure=0.9)
 
 
@@ -62,17 +65,20 @@ def courtyard(rng: np.random.Generator, paths: Paths, folder: Path | None) -> St
         strength=1.0,
         backdrop=(0.72, 0.76, 0.82),
     )
+    horizon(build, floor, "town", rng)
     return build.stage("courtyard", (), light, exposure=0.5)
 
 
 def rooftop(rng: np.random.Generator, paths: Paths, folder: Path | None) -> Stage:
     """A flat roof at sunrise or sunset: parapets, vents, the light of an HDRI from low down."""
     build, floor = SetBuilder(folder), Floor(paths)
-    ground(build, floor, str(rng.choice(["concrete", "asphalt", "wood"])), float(rng.uniform(2.5, 4.0)), rng)
+    texture, metres = str(rng.choice(["concrete", "asphalt", "wood"])), float(rng.uniform(2.5, 4.0))
+    beyond = float(rng.uniform(12.0, 15.0))
+    ground(build, floor, texture, metres, rng, beyond + 0.2)
     surfaces = {"stone": (("concrete", 1.4), ("plaster", 2.0), ("brick", 1.4)), "wood": (("wood", 1.0),)}
     furnish(build, floor, ROOF, int(rng.integers(10, 16)), paint_finishes(build, surfaces, rng), rng)
     parapet = build.material("parapet", TEXTURES["brick"], rng, metres=1.6)
-    reach = floor.reach + float(rng.uniform(12.0, 15.0))
+    reach = floor.reach + beyond
     for index, (x, y) in enumerate(((1, 0), (0, 1), (-1, 0), (0, -1))):
         size = (0.4, 2.0 * reach, 1.1) if x else (2.0 * reach, 0.4, 1.1)
         build.add_box(f"parapet-{index}", (x * reach, y * reach, 0.0), size, parapet)
@@ -82,6 +88,7 @@ def rooftop(rng: np.random.Generator, paths: Paths, folder: Path | None) -> Stag
         rotation=float(rng.uniform(0.0, 360.0)),
         strength=1.2,
     )
+    horizon(build, floor, "roofs", rng)
     return build.stage("rooftop", (), light, exposure=1.0)
 
 
@@ -93,6 +100,7 @@ def night_street(rng: np.random.Generator, paths: Paths, folder: Path | None) ->
     furnish(build, floor, STREET, int(rng.integers(8, 14)), _masonry(build, rng), rng)
     warm = (1.0, float(rng.uniform(0.84, 0.93)), float(rng.uniform(0.66, 0.8)))
     night = Environment(kind="color", color=(0.10, 0.13, 0.22), strength=0.6)
+    horizon(build, floor, "night-town", rng)
     return build.stage("night-street", _street_lamps(build, floor, warm, rng), night, exposure=0.3)
 
 

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from whacamole.stage.floor import CLEARANCE, Floor
 from whacamole.stage.garden import lay_out_garden
+from whacamole.stage.horizon import horizon
 from whacamole.stage.props import block, furnish, paint_finishes, plant_trees
 from whacamole.stage.stage import SetBuilder, Stage
 from whacamole.stage.surroundings import daylight, ground
@@ -25,4 +26,5 @@ def park(rng: np.random.Generator, paths: NDArray[np.float64], folder: Path | No
     rings = ((int(rng.integers(6, 10)), CLEARANCE + 1.0, 14.0), (int(rng.integers(10, 16)), 14.0, 30.0))
     plant_trees(build, floor, rings, rng)
     sun, sky = daylight(rng, (25.0, 65.0))
+    horizon(build, floor, "country", rng)
     return build.stage("park", (sun,), sky, exposure=0.7)

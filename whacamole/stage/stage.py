@@ -57,8 +57,11 @@ class SetBuilder:
         *,
         metres: float,
         roughness: float = 0.85,
+        cut: bool = False,
     ) -> Material:
         """Paint a texture that repeats every ``metres`` and return the material that shows it.
+
+        With ``cut`` the texture has a fourth channel, alpha, that cuts the surface out.
 
         One number is drawn from ``rng`` whether or not anything is painted, so that a stage which is only
         planned on is the stage that will be filmed.
@@ -69,8 +72,11 @@ class SetBuilder:
         self.folder.mkdir(parents=True, exist_ok=True)
         path = self.folder / f"{name}.png"
         pixels = np.round(texture(np.random.default_rng(grain)) * 255.0).astype(np.uint8)
-        Image.fromarray(pixels, "RGB").save(path, compress_level=1)
-        return Material(name=name, base_color_texture=path, roughness=roughness, uv_scale=1.0 / metres)
+        Image.fromarray(pixels, "RGBA" if cut else "RGB").save(path, compress_level=1)
+        return Material(
+            name=name, base_color_texture=path, roughness=roughness, uv_scale=1.0 / metres,
+            alpha_mode="clip" if cut else "opaque",
+        )  # fmt: skip
 
     def add(
         self,
@@ -98,7 +104,7 @@ class SetBuilder:
     def plain(
         self, name: str, color: Vector, *, roughness: float = 0.6, metallic: float = 0.0, glow: float = 0.0
     ) -> Material:
-        """Return a material of one linear colour, shining with ``glow`` times that colour."""
+        """Return a material of one sRGB colour, shining with ``glow`` times that colour."""
         return Material(
             name=name, base_color=color, roughness=roughness, metallic=metallic,
             emission=color, emission_strength=glow,

@@ -23,14 +23,25 @@ MOST_STOREYS = 4
 OUTWARD = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
 """Direction of each side."""
 
-HORIZON = 160.0
-"""How far the ground reaches beyond the people's paths [m]: past the farthest house."""
+HORIZON = 260.0
+"""How far the ground reaches beyond the people's paths [m]: under the foot of the farthest hills."""
 
 
-def ground(build: SetBuilder, floor: Floor, texture: str, metres: float, rng: np.random.Generator) -> None:
-    """Lay the ground far beyond everything that stands on it."""
+def ground(
+    build: SetBuilder,
+    floor: Floor,
+    texture: str,
+    metres: float,
+    rng: np.random.Generator,
+    beyond: float = HORIZON,
+) -> None:
+    """Lay the ground, ``beyond`` metres farther than the people's paths reach.
+
+    Args:
+        texture, metres: name, and metres after which it repeats.
+    """
     material = build.material("ground", TEXTURES[texture], rng, metres=metres)
-    build.add("ground", ground_grid(floor.reach + HORIZON), material)
+    build.add("ground", ground_grid(floor.reach + beyond), material)
 
 
 def daylight(rng: np.random.Generator, elevation: tuple[float, float]) -> tuple[Sun, Environment]:
