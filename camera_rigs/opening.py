@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from camera_rigs.scene import SCALES, STAND_OFF, Scene, View
-from camera_rigs.shots.arc import ANGLES
+from camera_rigs.shots.arc import ANGLES, polar_angle_rand
 from camera_rigs.shots.over_shoulder import over_shoulder_view_rand
 from camera_rigs.shots.pace import Range, draw
 from camera_rigs.smoothing import at
@@ -51,7 +51,7 @@ def opening_rand(rng: np.random.Generator, scene: Scene, style: Style, kind: str
 def _draw(rng: np.random.Generator, scene: Scene, style: Style, kind: str, factor: float) -> View:
     scale = SCALES[style.scales[int(rng.integers(len(style.scales)))]]
     name = str(rng.choice(list(ANGLE_WEIGHTS), p=list(ANGLE_WEIGHTS.values())))
-    theta, focal = draw(rng, ANGLES[name]), scene.lens.focal
+    theta, focal = polar_angle_rand(rng, scale, ANGLES[name]), scene.lens.focal
     low, high = FRAC_SHARES.get(kind, (0.0, 1.0))
     frac = scale.frac_min + draw(rng, (low, high)) * (scale.frac_max - scale.frac_min)
     r, _ = scene.framing(0, frac, theta, scale, focal)

@@ -24,8 +24,12 @@ STAND_OFF = 0.5
 HEADROOM_OVER_GROUND = 0.25
 """Lowest planned camera [m] over the ground: the height of a camera on a low-angle plate."""
 
-THETA_MIN = np.radians(35.0)
+THETA_MIN = float(np.radians(35.0))
 """Steepest planned high angle: 55° over the horizon. Beyond it film speaks of a top shot."""
+
+THETA_MIN_CLOSER = float(np.radians(62.0))
+"""Steepest planned high angle of medium shots and close-ups: 28° over the horizon. Steeper ones show the top
+of a head before bare ground."""
 
 THETA_MAX = np.radians(112.0)
 """Steepest planned low angle: 22° under the horizon; the ground mostly ends it earlier."""
@@ -54,6 +58,11 @@ class Scale:
     anchor: str
     frac_min: float
     frac_max: float
+
+    @property
+    def theta_min(self) -> float:
+        """The polar angle [rad] of the steepest planned high angle."""
+        return THETA_MIN if self.anchor == "pelvis" else THETA_MIN_CLOSER
 
     def measured_from(self, theta: Array | float) -> Array | float:
         """The polar angle [rad] at which the fraction holds for a camera at `theta`."""
@@ -135,7 +144,7 @@ class Scene:
         """The largest polar angle [rad] that keeps a camera at `r` over the ground from `lo` to `hi`."""
         anchor_z = float(self.subject.anchor(scale.anchor)[lo : hi + 1, 2].min())
         room = anchor_z - self.world.ground_z - HEADROOM_OVER_GROUND
-        return float(np.clip(np.arccos(np.clip(-room / r, -1.0, 1.0)), THETA_MIN, THETA_MAX))
+        return float(np.clip(np.arccos(np.clip(-room / r, -1.0, 1.0)), scale.theta_min, THETA_MAX))
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from camera_rigs.errors import PlanError
-from camera_rigs.scene import THETA_MIN, Scene, Span, View
+from camera_rigs.scene import Scale, Scene, Span, View
 from camera_rigs.shot import Draft, Move, Parameter, keyframe_at, record
 from camera_rigs.shots.pace import ANGULAR_SPEED, RIG_SPEED, Range, draw, radial, random_fracs
 from camera_rigs.smoothing import at
@@ -124,6 +124,12 @@ def plan_arc_horizontal_rand(
     return plan_arc(scene, span, view, delta_phi=float(rng.choice([-1.0, 1.0]) * angle), fracs=fracs)
 
 
+def polar_angle_rand(rng: np.random.Generator, scale: Scale, limits: Range) -> float:
+    """A polar angle [rad] out of `limits` that is not steeper than `scale` allows."""
+    low, high = (max(limit, scale.theta_min) for limit in limits)
+    return draw(rng, (low, high))
+
+
 def plan_arc_vertical_rand(
     rng: np.random.Generator,
     scene: Scene,
@@ -144,7 +150,8 @@ def plan_arc_vertical_rand(
         push_pull: probability that the arc pushes and pulls at the same time.
     """
     lowest = scene.lowest_theta(span.lo, span.hi, view.r, view.scale)
-    goals = [float(np.clip(draw(rng, limits), THETA_MIN, lowest)) for limits in (angles or ANGLES).values()]
+    ranges = (angles or ANGLES).values()
+    goals = [min(polar_angle_rand(rng, view.scale, limits), lowest) for limits in ranges]
     goals = [goal for goal in goals if abs(goal - view.theta) > MIN_RISE]
     if not goals:
         raise PlanError("no vertical arc: the ground leaves no other angle")

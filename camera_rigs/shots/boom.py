@@ -3,7 +3,7 @@
 import numpy as np
 
 from camera_rigs.errors import PlanError
-from camera_rigs.scene import HEADROOM_OVER_GROUND, THETA_MAX, THETA_MIN, Scene, Span, View
+from camera_rigs.scene import HEADROOM_OVER_GROUND, THETA_MAX, Scene, Span, View
 from camera_rigs.shot import Draft, Move, keyframe_at, record
 from camera_rigs.shots.pace import RIG_SPEED, Range, draw
 from camera_rigs.spherical import Array
@@ -49,7 +49,7 @@ def plan_boom_rand(
     lowest = max(
         scene.world.ground_z + HEADROOM_OVER_GROUND, float(anchor_z.max() + ring / np.tan(THETA_MAX))
     )
-    highest = float(anchor_z.min() + ring / np.tan(THETA_MIN))
+    highest = float(anchor_z.min() + ring / np.tan(view.scale.theta_min))
     reach = min(draw(rng, height), span.within(RIG_SPEED, scene.fps)) * calm
     up, down = min(reach, highest - start[2]), min(reach, start[2] - lowest)
     if max(up, down) < MIN_BOOM * calm:

@@ -6,7 +6,7 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from camera_rigs import GROUPS, KINDS, PlanError, Shake, Style, World, direct, resolve_shots
+from camera_rigs import GROUPS, KINDS, SCALES, PlanError, Shake, Style, World, direct, resolve_shots
 from camera_rigs.director import Director
 from camera_rigs.joins import spans_between
 
@@ -76,6 +76,20 @@ def test_a_clip_passes_through_several_angles(rig):
         path = plan(rig, rig.dancer(300), seed=seed).path
         spans.append(np.degrees(np.ptp(np.arcsin(path.forward[:, 2]))))
     assert np.median(spans) > 15.0
+
+
+def test_closer_shots_are_not_taken_from_steeply_above(rig):
+    steepest = {"pelvis": 0.0, "neck": 0.0}
+    for seed in range(40):
+        made = plan(rig, rig.dancer(120), "boom,arc-vertical", seed=seed)
+        for shot in made.shots:
+            anchor = SCALES[shot.scale].anchor
+            frames = slice(shot.start, shot.end + 1)
+            offset = made.path.location[frames] - made.subject.anchor(anchor)[frames]
+            rise = np.degrees(np.arcsin(offset[:, 2] / np.linalg.norm(offset, axis=1))).max()
+            steepest[anchor] = max(steepest[anchor], rise)
+    assert 20.0 < steepest["neck"] < 28.5
+    assert 40.0 < steepest["pelvis"] < 55.5
 
 
 @pytest.mark.parametrize("shots", sorted(KINDS))
