@@ -17,8 +17,9 @@ from whacamole.stage.props import (
     paint_finishes,
 )
 from whacamole.stage.stage import SetBuilder, Stage
-from whacamole.stage.surroundings import daylight, ground, house_fronts
+from whacamole.stage.surroundings import daylight, ground
 from whacamole.stage.textures import TEXTURES
+from whacamole.stage.town import Town, line_with_houses, square_around
 
 __all__ = ["courtyard", "market", "night_street", "plaza", "rooftop"]
 
@@ -31,7 +32,8 @@ def plaza(rng: np.random.Generator, paths: Paths, folder: Path | None) -> Stage:
     texture = str(rng.choice(["paving", "paving", "asphalt", "concrete", "brick"]))
     ground(build, floor, texture, float(rng.uniform(2.4, 3.6)), rng)
     sun, sky = daylight(rng, (22.0, 62.0))
-    house_fronts(build, floor, _some_sides(rng, 0.8), rng, sun)
+    square = square_around(floor, _some_sides(rng, 0.8), rng, sun, 15.0)
+    line_with_houses(build, square, Town(), rng, streets=True)
     furnish(build, floor, STREET, int(rng.integers(9, 16)), _masonry(build, rng), rng)
     horizon(build, floor, "town", rng)
     return build.stage("plaza", (sun,), sky, exposure=0.6)
@@ -42,7 +44,8 @@ def market(rng: np.random.Generator, paths: Paths, folder: Path | None) -> Stage
     build, floor = SetBuilder(folder), Floor(paths)
     ground(build, floor, str(rng.choice(["brick", "paving", "concrete"])), float(rng.uniform(2.0, 3.0)), rng)
     sun, sky = daylight(rng, (12.0, 28.0))
-    house_fronts(build, floor, _some_sides(rng, 0.9), rng, sun)
+    square = square_around(floor, _some_sides(rng, 0.9), rng, sun, 11.0)
+    line_with_houses(build, square, Town(storeys=(2, 3), shops=0.7), rng, streets=True)
     surfaces = {
         "cloth": (("cloth", 1.0), ("cloth", 0.7), ("cloth", 1.3)), "wood": (("wood", 1.0), ("wood", 0.7)),
         "stone": (("concrete", 1.4),),
@@ -56,7 +59,8 @@ def courtyard(rng: np.random.Generator, paths: Paths, folder: Path | None) -> St
     """A yard closed in by houses, lit by an overcast sky: soft light, no hard shadow."""
     build, floor = SetBuilder(folder), Floor(paths)
     ground(build, floor, str(rng.choice(["paving", "concrete", "brick"])), float(rng.uniform(2.0, 3.5)), rng)
-    house_fronts(build, floor, np.ones(4, bool), rng)
+    square = square_around(floor, np.ones(4, bool), rng, None, 15.0)
+    line_with_houses(build, square, Town(shops=0.1), rng, streets=False)
     furnish(build, floor, STREET, int(rng.integers(7, 13)), _masonry(build, rng), rng)
     light = Environment(
         kind="hdri",
@@ -96,7 +100,8 @@ def night_street(rng: np.random.Generator, paths: Paths, folder: Path | None) ->
     """A street at night under lamps: warm pools of light, dark fronts."""
     build, floor = SetBuilder(folder), Floor(paths)
     ground(build, floor, str(rng.choice(["asphalt", "paving"])), float(rng.uniform(2.4, 3.4)), rng)
-    house_fronts(build, floor, _some_sides(rng, 0.8), rng)
+    square = square_around(floor, _some_sides(rng, 0.8), rng, None, 15.0)
+    line_with_houses(build, square, Town(shops=0.6, lit=0.35), rng, streets=True, glow=0.8)
     furnish(build, floor, STREET, int(rng.integers(8, 14)), _masonry(build, rng), rng)
     warm = (1.0, float(rng.uniform(0.84, 0.93)), float(rng.uniform(0.66, 0.8)))
     night = Environment(kind="color", color=(0.10, 0.13, 0.22), strength=0.6)

@@ -9,23 +9,26 @@ from collections.abc import Callable
 from whacamole.stage.textures.foliage import flowers, leaves
 from whacamole.stage.textures.grounds import asphalt, concrete, grass, gravel, paving
 from whacamole.stage.textures.painting import Image
-from whacamole.stage.textures.walls import brick, facade, plaster, wallpaper
+from whacamole.stage.textures.walls import ashlar, brick, brickwork, plaster, roof_tiles, stucco, wallpaper
 from whacamole.stage.textures.wood_and_cloth import cloth, wood
 
 __all__ = ["TEXTURES"]
 
 TEXTURES: dict[str, Callable[..., Image]] = {
+    "ashlar": ashlar,
     "asphalt": asphalt,
     "brick": brick,
+    "brickwork": brickwork,
     "cloth": cloth,
     "concrete": concrete,
-    "facade": facade,
     "flowers": flowers,
     "grass": grass,
     "gravel": gravel,
     "leaves": leaves,
     "paving": paving,
     "plaster": plaster,
+    "roof-tiles": roof_tiles,
+    "stucco": stucco,
     "wallpaper": wallpaper,
     "wood": wood,
 }

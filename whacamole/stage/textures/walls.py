@@ -1,10 +1,10 @@
-"""Walls: brick, plaster, house fronts, wallpaper."""
+"""Walls and roofs: brick, stone, plaster, tiles, wallpaper."""
 
 import numpy as np
 
-from whacamole.stage.textures.painting import Image, clipped, dye, masonry, noise, tinted
+from whacamole.stage.textures.painting import Image, cells, clipped, dye, masonry, noise, tinted
 
-__all__ = ["brick", "facade", "plaster", "wallpaper"]
+__all__ = ["ashlar", "brick", "brickwork", "plaster", "roof_tiles", "stucco", "wallpaper"]
 
 
 def brick(rng: np.random.Generator, size: int = 512) -> Image:
@@ -25,19 +25,40 @@ def plaster(rng: np.random.Generator, size: int = 512) -> Image:
     return tinted(rng, size, (color[0], color[1], color[2]), 0.08)
 
 
-def facade(rng: np.random.Generator, size: int = 512) -> Image:
-    """One storey of a house front: plaster or brick around a row of windows."""
-    wall = plaster(rng, size) if rng.random() < 0.6 else brick(rng, size)
-    image = wall.copy()
-    windows = int(rng.integers(2, 4))
-    width, bottom, top = rng.uniform(0.42, 0.6) / windows, rng.uniform(0.12, 0.2), rng.uniform(0.68, 0.8)
-    glass = np.clip(0.16 + 0.10 * noise(rng, size, 2.0), 0.03, 0.5)[..., None] * np.array([0.8, 0.95, 1.1])
-    y, x = np.mgrid[0:size, 0:size] / size
-    cell = (x * windows) % 1.0 / windows - 0.5 / windows
-    for margin, paint in ((0.016, np.full_like(image, 0.85)), (0.0, glass)):
-        inside = (np.abs(cell) < width / 2 + margin) & (y > 1.0 - top - margin) & (y < 1.0 - bottom + margin)
-        image[inside] = paint[inside]
-    return clipped(image)
+def stucco(rng: np.random.Generator, size: int = 512) -> Image:
+    """Rendered wall, nearly white to be tinted: blotches, grain, and streaks that rain has left."""
+    streaks = np.repeat(noise(rng, size, 0.9, 6.0)[:1], size, axis=0)
+    streaks = streaks * np.clip(0.5 + 0.5 * noise(rng, size, 1.8), 0.0, 1.2)
+    tone = 0.86 * (1.0 + 0.045 * noise(rng, size, 1.7) + 0.025 * noise(rng, size, 0.4, 40.0) + 0.02 * streaks)
+    return clipped(tone[..., None] * np.array([1.0, 0.995, 0.98]))
+
+
+def brickwork(rng: np.random.Generator, size: int = 512) -> Image:
+    """Bricks of 25 × 7.7 cm with their joints, where the texture repeats every 4 m."""
+    base = np.array([0.56, 0.34, 0.26]) * rng.uniform(0.85, 1.2) + rng.normal(0.0, 0.02, 3)
+    image = masonry(
+        rng, size, 52, 16,
+        color=(base[0], base[1], base[2]), joint=(0.60, 0.57, 0.52),
+        stagger=0.5, spread=0.13, joint_width=0.4,
+    )  # fmt: skip
+    return clipped(image * (1.0 + 0.07 * noise(rng, size, 1.8))[..., None])
+
+
+def ashlar(rng: np.random.Generator, size: int = 512) -> Image:
+    """Dressed stone, nearly white to be tinted; blocks of 60 × 40 cm where it repeats every 2.4 m."""
+    return masonry(
+        rng, size, 6, 4, color=(0.80, 0.78, 0.73), joint=(0.52, 0.50, 0.46),
+        stagger=0.5, spread=0.055, joint_width=1.6,
+    )  # fmt: skip
+
+
+def roof_tiles(rng: np.random.Generator, size: int = 512) -> Image:
+    """Rows of tiles that shade each other, nearly white to be tinted; 20 × 33 cm if repeated every 4 m."""
+    rows, columns = 12, 20
+    index, edge = cells(size, rows, columns, 0.5)
+    y = np.mgrid[0:size, 0:size][0] / size * rows % 1.0
+    tone = rng.normal(0.78, 0.08, rows * columns)[index] * (0.7 + 0.3 * y) * np.clip(edge / 2.0, 0.5, 1.0)
+    return clipped((tone * (1.0 + 0.06 * noise(rng, size, 1.6)))[..., None] * np.array([1.0, 0.99, 0.97]))
 
 
 def wallpaper(rng: np.random.Generator, size: int = 512) -> Image:
