@@ -29,7 +29,7 @@ def stucco(rng: np.random.Generator, size: int = 512) -> Image:
     """Rendered wall, nearly white to be tinted: blotches, grain, and streaks that rain has left."""
     streaks = np.repeat(noise(rng, size, 0.9, 6.0)[:1], size, axis=0)
     streaks = streaks * np.clip(0.5 + 0.5 * noise(rng, size, 1.8), 0.0, 1.2)
-    tone = 0.86 * (1.0 + 0.045 * noise(rng, size, 1.7) + 0.025 * noise(rng, size, 0.4, 40.0) + 0.02 * streaks)
+    tone = 0.86 * (1.0 + 0.022 * noise(rng, size, 1.5) + 0.025 * noise(rng, size, 0.4, 40.0) + 0.02 * streaks)
     return clipped(tone[..., None] * np.array([1.0, 0.995, 0.98]))
 
 

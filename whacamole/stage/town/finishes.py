@@ -93,7 +93,7 @@ class TownFinishes:
             "lit": _glowing(pane, "lit", (1.0, 0.80, 0.52), glow),
             "lit-cool": _glowing(pane, "lit-cool", (0.95, 0.93, 0.85), 0.8 * glow),
             "shop": shop,
-            "shop-lit": _glowing(shop, "shop-lit", (1.0, 0.88, 0.68), 0.5 * glow),
+            "shop-lit": _glowing(shop, "shop-lit", (1.0, 0.88, 0.68), 0.3 * glow),
             "sign": _glowing(sign, "sign", (1.0, 0.95, 0.85), 0.06 * glow) if glow else sign,
         }  # fmt: skip
 

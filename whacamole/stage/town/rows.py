@@ -95,7 +95,7 @@ def line_with_houses(
 
 
 def _widths(length: float, rng: np.random.Generator, street: bool) -> list[tuple[float, float]]:
-    """Divide a row into houses: where each begins and its width [m]; a gap between two of them is a street."""
+    """Divide a row into houses: start and width [m] of each; a gap between two is a street."""
     gap = float(rng.uniform(*STREET)) if street and length > 40.0 else 0.0
     count = max(2, round((length - gap) / float(rng.uniform(*HOUSE_WIDTH))))
     share = rng.uniform(0.75, 1.25, count)
@@ -115,7 +115,7 @@ def _row(
     finishes: TownFinishes,
     rng: np.random.Generator,
 ) -> None:
-    """Build one row; ``place`` is the middle of its line of fronts. What is on the walls becomes one mesh a finish."""
+    """Build one row about ``place`` on its line of fronts; what is on the walls is one mesh a finish."""
     along, into = np.array([np.cos(yaw), np.sin(yaw)]), np.array([-np.sin(yaw), np.cos(yaw)])
     row = Pile()
     for index, (start, width) in enumerate(houses):

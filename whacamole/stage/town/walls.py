@@ -37,7 +37,7 @@ def pierced(pile: Pile, finish: str, wall: Sequence[float], holes: Rectangles) -
 
 
 def bars(pile: Pile, finish: str, where: Rectangles, y: tuple[float, float]) -> None:
-    """Lay boxes over rectangles on the pile, from ``y[0]`` back to ``y[1]``; those without width are left out."""
+    """Lay boxes over rectangles on the pile, from ``y[0]`` back to ``y[1]``; none where one has no width."""
     kept = where[(where[:, 2] - where[:, 0] > 1e-6) & (where[:, 3] - where[:, 1] > 1e-6)]
     if len(kept):
         low = np.column_stack([kept[:, 0], np.full(len(kept), y[0]), kept[:, 1]])

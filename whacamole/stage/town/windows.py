@@ -44,7 +44,8 @@ def _frames(pile: Pile, finish: str, holes: Rectangles) -> None:
     left, bottom, right, top = holes.T
     sides = [
         (left, bottom, left + FRAME, top), (right - FRAME, bottom, right, top),
-        (left + FRAME, bottom, right - FRAME, bottom + FRAME), (left + FRAME, top - FRAME, right - FRAME, top),
+        (left + FRAME, bottom, right - FRAME, bottom + FRAME),
+        (left + FRAME, top - FRAME, right - FRAME, top),
     ]  # fmt: skip
     bars(pile, finish, np.concatenate([np.stack(side, axis=1) for side in sides]), BACK)
 
