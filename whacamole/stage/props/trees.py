@@ -1,69 +1,157 @@
-"""Trees: a trunk that blocks the way, a crown above the heads that does not."""
+"""Trees: a trunk that blocks the way, branches and a crown above the heads that do not."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
+from render_jobs import Material
 from whacamole.stage.floor import Floor
-from whacamole.stage.shapes import Solid, Vector
+from whacamole.stage.props.growth import leafy, limb, scattered
+from whacamole.stage.shapes import Solid, joined, moved
 from whacamole.stage.stage import SetBuilder
 from whacamole.stage.textures import TEXTURES
+from whacamole.stage.textures.foliage import leaf_tones
 
-__all__ = ["plant_trees"]
+__all__ = ["HEADROOM", "plant_trees"]
+
+Floats = NDArray[np.float64]
+
+HEADROOM = 2.65
+"""No leaf or branch hangs lower [m]."""
+
+TRUNK = 2.4
+"""Of a trunk so much is in the way of people and cameras [m]; the rest is above their heads."""
+
+FAR = 14.0
+"""Trees planted from here on [m] have fewer, larger leaves."""
+
+CLUMP_OF_FAR = 1.6
+"""How much larger."""
+
+
+@dataclass(frozen=True)
+class Kind:
+    """How a kind of tree grows.
+
+    Attributes:
+        crown: radius and half height of the crown, each a range [m].
+        leaf: length and width of a leaf, or of a spray of small ones [m].
+        leaves: of a near tree.
+        boughs: fewest and most masses of leaves that make the crown.
+        droop: of the leaves, 0 any way round to 1 down.
+        taper: how much narrower the crown is at its top than at its foot.
+        seasons: tones it may have.
+    """
+
+    crown: tuple[tuple[float, float], tuple[float, float]]
+    leaf: tuple[float, float]
+    leaves: int
+    boughs: tuple[int, int]
+    droop: float
+    taper: float
+    seasons: tuple[str, ...]
+
+
+BROAD = ("summer", "summer", "spring", "autumn")
+KINDS = (
+    Kind(((1.9, 2.9), (1.5, 2.3)), (0.24, 0.14), 3300, (13, 20), 0.2, 0.25, BROAD),
+    Kind(((1.6, 2.4), (1.9, 2.8)), (0.22, 0.13), 3200, (13, 20), 0.3, 0.4, BROAD),
+    Kind(((0.8, 1.2), (2.8, 4.2)), (0.18, 0.12), 2800, (14, 20), 0.1, 0.5, BROAD),
+    Kind(((1.5, 2.1), (2.4, 3.8)), (0.36, 0.09), 3000, (18, 26), 0.6, 0.9, ("conifer",)),
+)
+"""Round, high-crowned, poplar, conifer."""
 
 
 def plant_trees(
-    build: SetBuilder,
-    floor: Floor,
-    rings: Sequence[tuple[int, float, float]],
-    rng: np.random.Generator,
+    build: SetBuilder, floor: Floor, rings: Sequence[tuple[int, float, float]], rng: np.random.Generator
 ) -> None:
-    """Plant trees: a trunk that blocks the way, a crown above the heads that does not.
+    """Plant trees of two or three kinds.
 
     Args:
         rings: how many, from how near the paths, to how far outside their rectangle [m].
     """
-    bark = build.material("bark", TEXTURES["wood"], rng, metres=0.9)
-    leaves = build.material("leaves", TEXTURES["leaves"], rng, metres=1.4, roughness=0.9)
+    bark = build.material("bark", TEXTURES["bark"], rng, metres=0.8, roughness=0.95)
+    kinds = [KINDS[index] for index in rng.choice(len(KINDS), int(rng.integers(2, 4)), replace=False)]
+    crowns = [_tones(build, index, kind, rng) for index, kind in enumerate(kinds)]
     spans = [(nearest, beyond) for count, nearest, beyond in rings for _ in range(count)]
     for index, (nearest, beyond) in enumerate(spans):
-        radius, trunk = float(rng.uniform(0.12, 0.28)), float(rng.uniform(2.2, 3.4))
-        place = floor.spot(rng, radius + 0.6, beyond, nearest)
+        girth = float(rng.uniform(0.11, 0.2))
+        place = floor.spot(rng, girth + 0.7, beyond, nearest)
         if place is None:
             continue
-        build.add_cylinder(f"trunk-{index}", (*place, 0.0), radius, trunk + 0.6, bark)
-        crown = _crown((*place, trunk), float(rng.uniform(1.1, 2.0)), rng)
-        build.add(f"crown-{index}", crown, leaves, smooth=True)
+        which = int(rng.integers(len(kinds)))
+        trunk, branches, crown = _grown(kinds[which], girth, nearest >= FAR, rng)
+        at = (*place, 0.0)
+        _stand(build, f"trunk-{index}", moved(trunk, at), bark)
+        build.add(f"branches-{index}", moved(branches, at), bark, smooth=True)
+        build.add(f"crown-{index}", moved(crown, at), crowns[which])
 
 
-def _crown(base: Vector, radius: float, rng: np.random.Generator) -> Solid:
-    """Return a crown: a few leafy balls grown into each other, lumpy at the scale of branches."""
-    import trimesh  # late: it takes longer to load than all else here
-
-    ball = trimesh.creation.icosphere(subdivisions=3)
-    vertices, faces, uv = [], [], []
-    for index in range(int(rng.integers(3, 6))):
-        lumps = 1.0 + 0.11 * _waves(ball.vertices, 5.0, rng) + 0.05 * _waves(ball.vertices, 12.0, rng)
-        size = radius * rng.uniform(0.55, 0.85)
-        offset = rng.uniform(-0.55, 0.55, 3) * radius * [1.0, 1.0, 0.5]
-        center = np.asarray(base) + np.array([0.0, 0.0, radius]) + offset
-        faces.append(ball.faces + index * len(ball.vertices))
-        vertices.append(center + ball.vertices * lumps[:, None] * size)
-        flat = np.stack([np.arctan2(ball.vertices[:, 1], ball.vertices[:, 0]), ball.vertices[:, 2]], axis=1)
-        uv.append((flat * size)[ball.faces])
-    return Solid(
-        np.concatenate(vertices).astype(np.float32),
-        np.concatenate(faces).astype(np.int32),
-        np.concatenate(uv).astype(np.float32),
+def _tones(build: SetBuilder, index: int, kind: Kind, rng: np.random.Generator) -> Material:
+    season = str(rng.choice(kind.seasons))
+    return build.material(
+        f"crown-{index}", partial(leaf_tones, season=season), rng, metres=1.0, roughness=0.7
     )
 
 
-def _waves(
-    directions: NDArray[np.float64], frequency: float, rng: np.random.Generator
-) -> NDArray[np.float64]:
-    """Return a smooth random function of unit vectors (N, 3), about −1 … 1."""
-    total = np.zeros(len(directions))
-    for _ in range(6):
-        total += np.sin(directions @ rng.normal(0.0, frequency, 3) + rng.uniform(0.0, 2.0 * np.pi))
-    return total / 3.0
+def _stand(build: SetBuilder, name: str, trunk: Solid, bark: Material) -> None:
+    """Put a trunk on the set, with the box around it to keep out of."""
+    low, high = trunk.vertices.min(axis=0).astype(float), trunk.vertices.max(axis=0).astype(float)
+    middle, size = (low + high) / 2.0, high - low
+    build.add(name, trunk, bark, smooth=True)
+    build.keep_out(name, (middle[0], middle[1], low[2]), (size[0], size[1], size[2]), 0.0)
+
+
+def _grown(kind: Kind, girth: float, far: bool, rng: np.random.Generator) -> tuple[Solid, Solid, Solid]:
+    """Grow a tree at the origin: its trunk up to ``TRUNK``, the rest of its wood, its leaves."""
+    radius, half = float(rng.uniform(*kind.crown[0])), float(rng.uniform(*kind.crown[1]))
+    middle = HEADROOM + 0.25 + half
+    lean = rng.normal(0.0, 0.12, 2)
+    height = np.array([0.0, 0.12, 0.4, 1.0, 1.7, TRUNK])
+    stem = np.column_stack([np.outer((height / middle) ** 2, lean), height])
+    flare = girth * np.array([1.7, 1.3, 1.08, 1.0, 0.95, 0.9])
+    upper = np.linspace(TRUNK, middle + 0.6 * half, 5)
+    spine = np.column_stack([np.outer((upper / middle) ** 2, lean), upper])
+    spine[1:, :2] += rng.normal(0.0, 0.05, (4, 2))
+    boughs, size = _boughs(kind, radius, half, rng)
+    boughs += [*lean, middle]
+    wood = [limb(spine, girth * np.linspace(0.9, 0.15, 5), 6)]
+    wood += [_branch(spine, bough, 0.35 * girth, rng) for bough in boughs[:: 3 if far else 2]]
+    scale = CLUMP_OF_FAR if far else 1.0
+    count = int(kind.leaves / scale**2 / len(boughs))
+    places, outward = scattered(boughs, size, count, rng)
+    outward = outward / np.linalg.norm(outward, axis=1, keepdims=True)
+    outward += 0.6 * (places - [*lean, middle]) / [radius, radius, half] + [0.0, 0.0, 0.25]
+    length, width = scale * kind.leaf[0], scale * kind.leaf[1]
+    places[:, 2] = np.maximum(places[:, 2], HEADROOM + 0.65 * length)
+    return limb(stem, flare, 9), joined(wood), leafy(places, outward, (length, width), rng, kind.droop)
+
+
+def _boughs(kind: Kind, radius: float, half: float, rng: np.random.Generator) -> tuple[Floats, Floats]:
+    """Draw masses of leaves that fill a crown about the origin: middles and radii, (N, 3) each."""
+    count = int(rng.integers(*kind.boughs))
+    # Evenly over the height and around (golden angle), then shaken.
+    level = np.linspace(-0.8, 0.85, count) + rng.normal(0.0, 0.06, count)
+    level = np.clip(level, -0.85, 0.9)
+    angle = np.arange(count) * 2.39996 + rng.normal(0.0, 0.3, count)
+    round_off = np.sqrt(1.0 - level**2)
+    cone = 0.62 * (1.0 - level) + 0.12
+    reach = (1.0 - kind.taper) * round_off + kind.taper * cone
+    away = radius * 0.68 * reach * rng.uniform(0.75, 1.05, count)
+    middle = np.stack([away * np.cos(angle), away * np.sin(angle), half * level * 0.8], axis=1)
+    size = radius * (0.26 + 0.22 * reach) * rng.uniform(0.85, 1.15, count)
+    flat = 0.5 if kind.taper > 0.8 else 0.8
+    return middle, np.stack([size, size, flat * size], axis=1)
+
+
+def _branch(spine: Floats, bough: Floats, girth: float, rng: np.random.Generator) -> Solid:
+    """A branch from the trunk up into a bough."""
+    start_z = np.clip(bough[2] - 0.5 * np.hypot(bough[0], bough[1]), spine[0, 2] + 0.3, spine[-1, 2])
+    start = np.array([*(np.interp(start_z, spine[:, 2], spine[:, axis]) for axis in (0, 1)), start_z])
+    bend = (start + bough) / 2.0 + [0.0, 0.0, -0.08] + rng.normal(0.0, 0.04, 3)
+    bough = np.array([bough[0], bough[1], max(bough[2], HEADROOM + 0.1)])
+    bend[2] = max(bend[2], HEADROOM + 0.1)
+    return limb(np.stack([start, bend, bough]), girth * np.array([1.0, 0.7, 0.3]), 5)

@@ -6,7 +6,7 @@ detail at many scales, because visual odometry and the eye both need something t
 
 from collections.abc import Callable
 
-from whacamole.stage.textures.foliage import flowers, leaves
+from whacamole.stage.textures.foliage import bark, flowers, leaves
 from whacamole.stage.textures.grounds import asphalt, concrete, grass, gravel, paving
 from whacamole.stage.textures.painting import Image
 from whacamole.stage.textures.walls import ashlar, brick, brickwork, plaster, roof_tiles, stucco, wallpaper
@@ -17,6 +17,7 @@ __all__ = ["TEXTURES"]
 TEXTURES: dict[str, Callable[..., Image]] = {
     "ashlar": ashlar,
     "asphalt": asphalt,
+    "bark": bark,
     "brick": brick,
     "brickwork": brickwork,
     "cloth": cloth,
