@@ -26,7 +26,9 @@ BoolArray = npt.NDArray[np.bool_]
 SKIN_PART, EYE_PARTS, TEETH_PARTS, TONGUE_PART = 0, (1, 2), (3, 4), 5
 """Values of the body file's ``vertex_part``."""
 
-ROUGHNESS: Final = {"leather": 0.5, "hair": 0.45, "cloth": 0.85, "pattern": 0.85, "denim": 0.9, "keep": 0.75}
+ROUGHNESS: Final = {"leather": 0.5, "hair": 0.7, "cloth": 0.9, "pattern": 0.9, "denim": 0.9, "keep": 0.8}
+SPECULAR: Final = {"leather": 0.3, "hair": 0.12, "cloth": 0.15, "pattern": 0.15, "denim": 0.15, "keep": 0.25}
+"""How surfaces shine. Strands of hair scatter: one even gloss over all of them makes a helmet of a head."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,7 +180,7 @@ def _item_meshes(
             base_color_texture=item_texture(wardrobe, item, worn, member.hair_colour, folder),
             alpha_mode="clip" if item.see_through else "opaque",
             roughness=ROUGHNESS[item.colouring],
-            specular=0.3,
+            specular=SPECULAR[item.colouring],
             normal_texture=wardrobe.texture(item.normal) if item.normal else None,
         )
         fine = item.see_through or len(geometry.faces) > 3500

@@ -28,17 +28,21 @@ TONE_RANGE: Final = {"african": (0.55, 1.0), "asian": (0.1, 0.6), "caucasian": (
 """Part of the scale (0 lightest, 1 darkest) that people of an origin span; together they cover all of it."""
 
 HAIR_COLOURS: Final[dict[str, Colour]] = {
-    "black": (0.075, 0.065, 0.062),
-    "dark brown": (0.155, 0.105, 0.08),
+    "black": (0.105, 0.092, 0.086),
+    "dark brown": (0.175, 0.122, 0.093),
     "brown": (0.27, 0.18, 0.12),
     "light brown": (0.42, 0.30, 0.19),
-    "auburn": (0.36, 0.16, 0.09),
-    "red": (0.44, 0.20, 0.10),
+    "auburn": (0.31, 0.16, 0.11),
+    "red": (0.40, 0.21, 0.13),
     "dark blond": (0.53, 0.42, 0.28),
-    "blond": (0.74, 0.61, 0.41),
-    "grey": (0.50, 0.49, 0.48),
-    "white": (0.66, 0.65, 0.62),
+    "blond": (0.66, 0.54, 0.38),
+    "grey": (0.38, 0.37, 0.36),
+    "white": (0.52, 0.51, 0.49),
 }
+"""Colours of the surface, sRGB 0..1: what shines on hair comes on top."""
+
+HAIR_CONTRAST: Final = {"grey": 1.25, "black": 1.3}
+"""How much of the strands' own light and dark shows, where not 1: grey hair mixes light and dark ones."""
 
 EYE_COLOURS: Final[dict[str, Colour]] = {
     "dark brown": (0.16, 0.09, 0.05),

@@ -86,13 +86,12 @@ def _hair(item: Item, pixels: Pixels, colour: str) -> Pixels:
     level = float(np.median(palette.luminance(pixels)[solid])) if solid.any() else 0.5
     red, green, blue = palette.HAIR_COLOURS[colour]
     shade = 0.7 if item.slot == "brows" else 1.0
-    # The pictures are white where they are cut away, and that shows in the strands beside.
     strands = palette.dye(
         pixels[..., :3],
         (red * shade, green * shade, blue * shade),
-        contrast=0.7,
+        contrast=palette.HAIR_CONTRAST.get(colour, 1.0),
         level=level,
-        brightest=2.0,
+        brightest=2.2,
     )
     return np.concatenate([strands, pixels[..., 3:]], axis=2)
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 from open_people.item_list import ITEMS, LOGOS, SKINS, Patch
-from open_people.textures import encode, fill_unused, paint_out, used_pixels
+from open_people.textures import cut_out, encode, fill_unused, paint_out, strands_only, used_pixels
 
 
 def test_used_pixels_follow_the_uv_map_with_v_up():
@@ -31,6 +31,33 @@ def test_a_patch_covers_the_mark_and_leaves_the_rest():
     assert np.abs(clean[20:40, 20:40] - 100).max() < 30
     np.testing.assert_array_equal(clean[60:], cloth[60:])
     np.testing.assert_array_equal(clean[:12], cloth[:12])
+
+
+def test_what_is_cut_away_takes_the_colour_of_strands_and_marks_outside_the_mesh_go():
+    pixels = np.full((32, 32, 4), 255.0)
+    pixels[:, :16] = [40, 30, 20, 255]
+    pixels[:, 16:, 3] = 0  # white paper, clear
+    pixels[:4, 28:] = [255, 0, 0, 255]  # a mark that no face reads
+    used = np.zeros((32, 32), bool)
+    used[:, :20] = True
+    clean = cut_out(pixels, used)
+    assert (clean[..., :3] == [40, 30, 20]).all()
+    np.testing.assert_array_equal(clean[..., 3] > 0, np.arange(32) < [[16]] * 32)
+
+
+def test_pictures_of_hair_lose_painted_sheen_and_keep_their_strands():
+    rng = np.random.default_rng(0)
+    strands = np.exp(rng.normal(0, 0.1, 256))[None, :]
+    sheen = np.linspace(0.2, 0.8, 256)[:, None]
+    pixels = np.dstack(
+        [255 * sheen * strands * tint for tint in (0.9, 0.7, 0.5)] + [np.full((256, 256), 255.0)]
+    )
+    grey = strands_only(pixels)
+    assert (grey[..., 0] == grey[..., 2]).all()
+    rows, columns = grey[..., 0].mean(axis=1), grey[..., 0].mean(axis=0)
+    assert rows.max() / rows.min() < 2 < (sheen.max() / sheen.min())
+    assert np.corrcoef(columns, strands[0])[0, 1] > 0.8
+    assert np.log(columns).std() > 1.5 * np.log(strands).std()
 
 
 def test_pictures_with_alpha_become_webp():

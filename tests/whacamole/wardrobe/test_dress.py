@@ -1,13 +1,19 @@
 """Dressing: the meshes of one person."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from PIL import Image
+from scipy.spatial import cKDTree
 
-from whacamole.body import BodyModel, vertex_normals
+from render_jobs.colour import linear_image
+from whacamole.body import BodyModel, unit_vectors, vertex_normals
 from whacamole.wardrobe import Worn, cast, dress, fits
 from whacamole.wardrobe.catalogue import catalogue
+from whacamole.wardrobe.palette import HAIR_COLOURS
 from whacamole.wardrobe.skin import DRAWN_IN, drawn_in
+from whacamole.wardrobe.textures import TextureFolder, item_texture
 
 
 @pytest.fixture(scope="module")
@@ -58,6 +64,41 @@ def test_textures_exist_and_hair_is_cut_by_alpha(dressed):
             assert path is None or path.is_file()
         part = mesh.name.split("-", 1)[1].split("_")[0]
         assert (material.alpha_mode == "clip") == (part in ("hair", "brows", "lashes"))
+
+
+@pytest.mark.parametrize("hair", ["hair_cropped", "hair_parted", "hair_bob", "hair_swept"])
+def test_hair_is_strands_and_not_a_shell(body, member, make_params, tmp_path, hair):
+    """Neighbouring faces of a shell face the same way and are one colour; strands neither."""
+    worn = replace(member, worn=(*member.worn[:3], Worn(hair)), hair_colour="brown")
+    (mesh,) = (
+        m for m in dress(worn, body, make_params(member.betas, 1), textures=tmp_path) if hair in m.name
+    )
+    at = mesh.vertices[0].astype(np.float64)
+    quads = mesh.faces[mesh.faces[:, 3] >= 0]
+    normals = unit_vectors(np.cross(at[quads[:, 2]] - at[quads[:, 0]], at[quads[:, 3]] - at[quads[:, 1]]))
+    _, near = cKDTree(at[quads].mean(axis=1)).query(at[quads].mean(axis=1), k=12)
+    agreement = np.abs(np.einsum("nkc,nc->nk", normals[near], normals))
+    assert np.degrees(np.arccos(np.clip(agreement, 0, 1))).mean() > 15
+    # A mirror-like gloss over all of them would be a helmet's.
+    assert mesh.material.roughness >= 0.6
+    assert mesh.material.specular <= 0.2
+
+
+def test_hair_has_the_colour_it_is_named_for_and_strands_vary_about_it(tmp_path):
+    wardrobe, folder = catalogue(), TextureFolder(tmp_path)
+    item = wardrobe.items["hair_short"]
+    brightness = []
+    for colour, target in HAIR_COLOURS.items():
+        with Image.open(item_texture(wardrobe, item, Worn(item.name), colour, folder)) as image:
+            pixels = np.asarray(image)
+        seen = pixels[pixels[..., 3] > 128][:, :3]
+        np.testing.assert_allclose(np.median(seen, axis=0) / 255, target, atol=0.03)
+        light = linear_image(seen) @ [0.2126, 0.7152, 0.0722]
+        assert np.percentile(light, 90) > 1.3 * np.percentile(light, 10), colour
+        brightness.append(float(np.median(light)))
+    # Grey hair is no snow: under a third of the light, and black is no hole.
+    assert max(brightness) < 0.35
+    assert min(brightness) > 0.004
 
 
 def test_dyeing_the_shirt_leaves_other_pictures_alone(body, make_params, tmp_path):

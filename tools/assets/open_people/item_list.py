@@ -12,6 +12,8 @@ from dataclasses import dataclass
 from itertools import product
 from typing import Final, Literal
 
+from open_people.strands import Style
+
 Slot = Literal["top", "bottom", "shoes", "hat", "hair", "brows", "lashes"]
 Wearer = Literal["female", "male", "any"]
 Age = Literal["young", "middle", "old"]
@@ -168,3 +170,16 @@ LOGOS: Final[dict[str, tuple[Patch, ...]]] = {
     ),
 }
 """MakeHuman's mark on the chest of some shirts, by source; a mark of its own is not CC0 material."""
+
+LOCKS: Final[dict[str, Style]] = {
+    "hair_afro": Style(1500, length=0.03, width=0.004, lift=0.006, roll=60.0, tangle=1.2),
+    "hair_bob": Style(900, length=0.07),
+    "hair_bob_fringe": Style(900, length=0.07, parted=True),
+    "hair_braid": Style(700, length=0.05, lift=0.0015, floor=0.16),
+    "hair_ponytail": Style(700, length=0.05, lift=0.0015, floor=0.16),
+    "hair_short": Style(1000, length=0.035),
+    "hair_cropped": Style(1100, length=0.03),
+    "hair_parted": Style(1000, length=0.05),
+    "hair_swept": Style(900, length=0.05),
+}
+"""The locks laid over the shells of hair, by item. Long hair has strips of its own."""

