@@ -6,30 +6,55 @@ detail at many scales, because visual odometry and the eye both need something t
 
 from collections.abc import Callable
 
+from whacamole.stage.textures.floors import boards, carpet, floor_tiles, herringbone, poured
 from whacamole.stage.textures.foliage import bark, flowers, leaves
 from whacamole.stage.textures.grounds import asphalt, concrete, grass, gravel, paving
+from whacamole.stage.textures.interiors import (
+    art,
+    blockwork,
+    cardboard,
+    paint,
+    palette,
+    rug,
+    timber,
+    wallpaper,
+    weave,
+)
 from whacamole.stage.textures.painting import Image
-from whacamole.stage.textures.walls import ashlar, brick, brickwork, plaster, roof_tiles, stucco, wallpaper
+from whacamole.stage.textures.walls import ashlar, brick, brickwork, plaster, roof_tiles, stucco
 from whacamole.stage.textures.wood_and_cloth import cloth, wood
 
 __all__ = ["TEXTURES"]
 
 TEXTURES: dict[str, Callable[..., Image]] = {
+    "art": art,
     "ashlar": ashlar,
     "asphalt": asphalt,
     "bark": bark,
+    "blockwork": blockwork,
+    "boards": boards,
     "brick": brick,
     "brickwork": brickwork,
+    "cardboard": cardboard,
+    "carpet": carpet,
     "cloth": cloth,
     "concrete": concrete,
+    "floor-tiles": floor_tiles,
     "flowers": flowers,
     "grass": grass,
     "gravel": gravel,
+    "herringbone": herringbone,
     "leaves": leaves,
+    "paint": paint,
+    "palette": palette,
     "paving": paving,
     "plaster": plaster,
+    "poured": poured,
     "roof-tiles": roof_tiles,
+    "rug": rug,
     "stucco": stucco,
+    "timber": timber,
     "wallpaper": wallpaper,
+    "weave": weave,
     "wood": wood,
 }

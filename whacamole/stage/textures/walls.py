@@ -1,10 +1,10 @@
-"""Walls and roofs: brick, stone, plaster, tiles, wallpaper."""
+"""Walls and roofs: brick, stone, plaster, tiles."""
 
 import numpy as np
 
-from whacamole.stage.textures.painting import Image, cells, clipped, dye, masonry, noise, tinted
+from whacamole.stage.textures.painting import Image, cells, clipped, masonry, noise, tinted
 
-__all__ = ["ashlar", "brick", "brickwork", "plaster", "roof_tiles", "stucco", "wallpaper"]
+__all__ = ["ashlar", "brick", "brickwork", "plaster", "roof_tiles", "stucco"]
 
 
 def brick(rng: np.random.Generator, size: int = 512) -> Image:
@@ -59,15 +59,3 @@ def roof_tiles(rng: np.random.Generator, size: int = 512) -> Image:
     y = np.mgrid[0:size, 0:size][0] / size * rows % 1.0
     tone = rng.normal(0.78, 0.08, rows * columns)[index] * (0.7 + 0.3 * y) * np.clip(edge / 2.0, 0.5, 1.0)
     return clipped((tone * (1.0 + 0.06 * noise(rng, size, 1.6)))[..., None] * np.array([1.0, 0.99, 0.97]))
-
-
-def wallpaper(rng: np.random.Generator, size: int = 512) -> Image:
-    """A printed pattern of dots and stripes on a pale ground."""
-    y, x = np.mgrid[0:size, 0:size] / size
-    pale, print_color = 0.55 + 0.45 * dye(rng), dye(rng)
-    count = 2 * int(rng.integers(2, 5))  # staggered columns meet at the border only if their number is even
-    cell_x, cell_y = x * count % 1.0 - 0.5, (y * count + 0.5 * (np.floor(x * count) % 2)) % 1.0 - 0.5
-    dots = np.hypot(cell_x, cell_y) < rng.uniform(0.12, 0.3)
-    stripes = np.abs(cell_x) < 0.03
-    image = np.where((dots | stripes)[..., None], print_color, pale)
-    return clipped(image * (1.0 + 0.03 * noise(rng, size, 1.0))[..., None])
