@@ -6,8 +6,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from whacamole.stage.indoors import living_room, sports_hall, warehouse
+from whacamole.stage.halls import sports_hall, warehouse
 from whacamole.stage.light import DAY, Hdri, lit_by
+from whacamole.stage.living import living_room
 from whacamole.stage.outdoors import courtyard, market, night_street, plaza, rooftop
 from whacamole.stage.own import OwnStage
 from whacamole.stage.parks import park

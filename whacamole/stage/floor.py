@@ -45,6 +45,12 @@ class Floor:
         """Keep a disc [m] free of everything that is yet to stand."""
         self._taken.append((place, radius))
 
+    def is_free(self, place: NDArray[np.float64], radius: float, clearance: float) -> bool:
+        """Whether a disc [m] meets nothing that stands, and keeps a gap [m] to the paths."""
+        from_people = np.hypot(*(self.paths - place).T).min()
+        apart = all(np.hypot(*(place - other)) > radius + taken for other, taken in self._taken)
+        return bool(from_people > clearance + radius and apart)
+
     def spot(
         self, rng: np.random.Generator, footprint: float, beyond: float, clearance: float = CLEARANCE
     ) -> tuple[float, float] | None:
@@ -63,9 +69,7 @@ class Floor:
             high = np.minimum(high, self.bounds[1] - footprint)
         for _ in range(_TRIES):
             place = rng.uniform(low, high)
-            from_people = np.hypot(*(self.paths - place).T).min()
-            apart = all(np.hypot(*(place - other)) > footprint + radius for other, radius in self._taken)
-            if from_people > clearance + footprint and apart:
+            if self.is_free(place, footprint, clearance):
                 self._taken.append((place, footprint))
                 return float(place[0]), float(place[1])
         return None

@@ -110,6 +110,11 @@ class SetBuilder:
             emission=color, emission_strength=glow,
         )  # fmt: skip
 
+    def tinted(self, painted: Material, name: str, color: Vector, roughness: float | None = None) -> Material:
+        """Return a painted material in another sRGB colour: one texture serves for many."""
+        rough = painted.roughness if roughness is None else roughness
+        return painted.model_copy(update={"name": name, "base_color": color, "roughness": rough})
+
     def add_cylinder(self, name: str, base: Vector, radius: float, height: float, material: Material) -> None:
         """Put an upright cylinder on the set; ``base`` is the middle of its underside."""
         size = (2.0 * radius, 2.0 * radius, height)

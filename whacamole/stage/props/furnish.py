@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from render_jobs import Material
 from whacamole.stage.floor import CLEARANCE, Floor
 from whacamole.stage.props.prop import Finishes, Prop, PropMaker
 from whacamole.stage.shapes import Vector, joined, turned
@@ -47,9 +48,13 @@ def put(
     finishes: Finishes,
     rng: np.random.Generator,
 ) -> None:
-    """Put a prop on the set, one mesh for each of its finishes, called ``name.finish``."""
+    """Put a prop on the set, one mesh for each of its finishes, called ``name.finish``,
+    and one for what is shaded smoothly."""
     build.keep_out(name, base, prop.size, yaw)
-    for finish in dict.fromkeys(part.finish for part in prop.parts):
-        solid = joined([part.solid for part in prop.parts if part.finish == finish])
-        material = finishes[finish][int(rng.integers(len(finishes[finish])))]
-        build.add(f"{name}.{finish}", turned(solid, base, yaw), material)
+    chosen: dict[str, Material] = {}
+    for finish, smooth in dict.fromkeys((part.finish, part.smooth) for part in prop.parts):
+        if finish not in chosen:
+            chosen[finish] = finishes[finish][int(rng.integers(len(finishes[finish])))]
+        solid = joined([part.solid for part in prop.parts if (part.finish, part.smooth) == (finish, smooth)])
+        mesh = f"{name}.{finish}-smooth" if smooth else f"{name}.{finish}"
+        build.add(mesh, turned(solid, base, yaw), chosen[finish], smooth=smooth)

@@ -20,10 +20,12 @@ class Part:
     Attributes:
         solid: about the middle of the prop's underside.
         finish: what it is made of: "wood", "metal", …; a stage has one or several materials for each.
+        smooth: shade it as round rather than faceted.
     """
 
     solid: Solid
     finish: str
+    smooth: bool = False
 
 
 @dataclass(frozen=True, eq=False)
