@@ -6,15 +6,16 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from whacamole.stage.halls import sports_hall, warehouse
 from whacamole.stage.light import DAY, Hdri, lit_by
 from whacamole.stage.living import living_room
 from whacamole.stage.outdoors import courtyard, market, night_street, plaza, rooftop
 from whacamole.stage.own import OwnStage
 from whacamole.stage.parks import park
 from whacamole.stage.places import Places, find_places
+from whacamole.stage.sports import sports_hall
 from whacamole.stage.stage import SetBuilder, Stage
 from whacamole.stage.survey import Ground
+from whacamole.stage.warehouses import warehouse
 
 __all__ = [
     "DAY",

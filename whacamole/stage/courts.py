@@ -32,8 +32,8 @@ def court_lines(kind: str, middle: NDArray[np.float64], yaw: float) -> Solid:
         curves.append(_arc((0.0, 0.0), 1.8, 0.0, 2 * np.pi))
         for side in (-1, 1):
             for edge in (-2.45, 2.45 - LINE):  # the restricted area, 5.8 m deep
-                bars.append((*sorted((side * x, side * (x - 5.8))), edge, edge + LINE))  # type: ignore[arg-type]
-                bars[-1] = (bars[-1][0], edge, bars[-1][1], edge + LINE)
+                a, b = sorted((side * x, side * (x - 5.8)))
+                bars.append((a, edge, b, edge + LINE))
             a, b = sorted((side * (x - 5.8), side * (x - 5.8 + LINE)))
             bars.append((a, -2.45, b, 2.45))
             turn = 0.0 if side < 0 else np.pi

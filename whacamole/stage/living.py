@@ -39,28 +39,56 @@ CLEARANCE = 2.2
 """From the people's paths to furniture [m]."""
 
 PAINTS: tuple[Vector, ...] = (
-    (0.93, 0.91, 0.87), (0.90, 0.89, 0.87), (0.86, 0.85, 0.80), (0.82, 0.85, 0.80),
-    (0.82, 0.85, 0.88), (0.90, 0.84, 0.76), (0.88, 0.82, 0.80), (0.78, 0.80, 0.80),
-)  # fmt: skip
+    (0.93, 0.91, 0.87),
+    (0.90, 0.89, 0.87),
+    (0.86, 0.85, 0.80),
+    (0.82, 0.85, 0.80),
+    (0.82, 0.85, 0.88),
+    (0.90, 0.84, 0.76),
+    (0.88, 0.82, 0.80),
+    (0.78, 0.80, 0.80),
+)
 ACCENTS: tuple[Vector, ...] = (
-    (0.45, 0.53, 0.50), (0.36, 0.43, 0.52), (0.66, 0.50, 0.42), (0.55, 0.56, 0.48), (0.52, 0.50, 0.50),
-)  # fmt: skip
+    (0.45, 0.53, 0.50),
+    (0.36, 0.43, 0.52),
+    (0.66, 0.50, 0.42),
+    (0.55, 0.56, 0.48),
+    (0.52, 0.50, 0.50),
+)
 """Of walls: pale, and of the one wall that is not."""
 
 WOODS: tuple[Vector, ...] = (
-    (0.72, 0.56, 0.40), (0.84, 0.72, 0.56), (0.45, 0.31, 0.22), (0.58, 0.42, 0.29), (0.30, 0.22, 0.18),
-)  # fmt: skip
+    (0.72, 0.56, 0.40),
+    (0.84, 0.72, 0.56),
+    (0.45, 0.31, 0.22),
+    (0.58, 0.42, 0.29),
+    (0.30, 0.22, 0.18),
+)
 FABRICS: tuple[Vector, ...] = (
-    (0.62, 0.61, 0.59), (0.76, 0.71, 0.63), (0.36, 0.38, 0.41), (0.28, 0.35, 0.43),
-    (0.36, 0.42, 0.35), (0.55, 0.40, 0.31), (0.48, 0.45, 0.42),
-)  # fmt: skip
+    (0.62, 0.61, 0.59),
+    (0.76, 0.71, 0.63),
+    (0.36, 0.38, 0.41),
+    (0.28, 0.35, 0.43),
+    (0.36, 0.42, 0.35),
+    (0.55, 0.40, 0.31),
+    (0.48, 0.45, 0.42),
+)
 CUSHIONS: tuple[Vector, ...] = (
-    (0.80, 0.62, 0.25), (0.24, 0.46, 0.48), (0.70, 0.36, 0.26), (0.86, 0.82, 0.75), (0.55, 0.28, 0.32),
+    (0.80, 0.62, 0.25),
+    (0.24, 0.46, 0.48),
+    (0.70, 0.36, 0.26),
+    (0.86, 0.82, 0.75),
+    (0.55, 0.28, 0.32),
     (0.45, 0.52, 0.40),
-)  # fmt: skip
+)
 
-FLOORS = (("boards", BOARDS_METRES), ("boards", BOARDS_METRES), ("herringbone", HERRINGBONE_METRES),
-          ("floor-tiles", 1.8), ("carpet", 1.6))  # fmt: skip
+FLOORS = (
+    ("boards", BOARDS_METRES),
+    ("boards", BOARDS_METRES),
+    ("herringbone", HERRINGBONE_METRES),
+    ("floor-tiles", 1.8),
+    ("carpet", 1.6),
+)
 """Kinds, and metres after which they repeat."""
 
 
@@ -117,26 +145,37 @@ def _paint(
     sky, far, near = _outdoors(build, by_day)
     lit = build.plain("lit", (1.0, 0.95, 0.86), glow=3.0)
     trim = {
-        "frame": frame, "leaf": leaf, "metal": metal, "sky": sky, "far": far, "near": near, "lit": lit, "art": art,
+        "frame": frame,
+        "leaf": leaf,
+        "metal": metal,
+        "sky": sky,
+        "far": far,
+        "near": near,
+        "lit": lit,
+        "art": art,
         "housing": build.plain("housing", (0.82, 0.82, 0.80), roughness=0.5),
         "curtain": build.tinted(weave, "curtain", _one(rng, (*CUSHIONS, *FABRICS[:2], *PAINTS[:3]))),
         "picture-frame": dark if rng.random() < 0.5 else build.tinted(timber, "picture-frame", other),
         "mat": build.plain("mat", (0.93, 0.92, 0.89), roughness=0.8),
         "rug": build.material("rug", TEXTURES["rug"], rng, metres=1.0, roughness=0.95),
         "ceiling": build.plain("ceiling", (0.92, 0.92, 0.90), roughness=0.9),
-    }  # fmt: skip
+    }
     fabrics = [build.tinted(weave, f"fabric-{k}", _one(rng, FABRICS)) for k in range(2)]
     accents = [build.tinted(weave, f"accent-{k}", _one(rng, CUSHIONS)) for k in range(2)]
     seat = accents[0] if rng.random() < 0.4 else build.tinted(timber, "seat", wood)
     finishes: Finishes = {
         "wood": (build.tinted(timber, "wood-0", wood), build.tinted(timber, "wood-1", other)),
         "white": (build.plain("white", (0.86, 0.86, 0.84), roughness=0.4),),
-        "fabric": tuple(fabrics), "accent": tuple(accents), "seat": (seat,), "dark": (dark,), "metal": (metal,),
+        "fabric": tuple(fabrics),
+        "accent": tuple(accents),
+        "seat": (seat,),
+        "dark": (dark,),
+        "metal": (metal,),
         "things": (build.material("things", TEXTURES["palette"], rng, metres=1.0, roughness=0.5),),
         "leaves": (build.plain("leaves", (0.20, 0.36, 0.16), roughness=0.5),),
         "screen": (build.plain("screen", (0.02, 0.02, 0.025), roughness=0.12),),
         "shade": (build.plain("shade", (1.0, 0.88, 0.68), glow=1.3),),
-    }  # fmt: skip
+    }
     return ground, walls, trim, finishes
 
 
@@ -159,9 +198,11 @@ def _open_up(shell: Room, floor: Floor, rng: np.random.Generator) -> list[tuple[
     """Cut doors and windows; hang curtains and radiators. Returns the windows of the walls that have any."""
     low, skirt = bool(rng.random() < 0.3), float(rng.uniform(0.08, 0.14))
     kind = WindowKind(
-        0.1 if low else float(rng.uniform(0.82, 0.95)), float(rng.uniform(2.15, 2.35)),
-        float(rng.uniform(0.05, 0.075)), bool(rng.random() < 0.4),
-    )  # fmt: skip
+        0.1 if low else float(rng.uniform(0.82, 0.95)),
+        float(rng.uniform(2.15, 2.35)),
+        float(rng.uniform(0.05, 0.075)),
+        bool(rng.random() < 0.4),
+    )
     first = int(rng.integers(4))
     sides = [first] if rng.random() < 0.4 else [first, (first + int(rng.integers(1, 3))) % 4]
     for wall in (shell.walls[k] for k in range(4) if k not in sides):

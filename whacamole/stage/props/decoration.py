@@ -14,8 +14,11 @@ def floor_lamp(rng: np.random.Generator) -> Prop:
     """A foot, a rod and a lit shade."""
     height, wide, narrow = drawn(rng, (1.45, 1.7), (0.19, 0.25), (0.12, 0.18))
     shade = lathe([(wide, height - 0.28), (narrow, height)], 24)
-    parts = [Part(lathe([(0.15, 0.0), (0.15, 0.02), (0.02, 0.03)], 20), "dark"),
-             Part(rod((0.0, 0.0, 0.02), (0.0, 0.0, height - 0.26), 0.012), "dark"), Part(shade, "shade")]  # fmt: skip
+    parts = [
+        Part(lathe([(0.15, 0.0), (0.15, 0.02), (0.02, 0.03)], 20), "dark"),
+        Part(rod((0.0, 0.0, 0.02), (0.0, 0.0, height - 0.26), 0.012), "dark"),
+        Part(shade, "shade"),
+    ]
     return standing("floor-lamp", parts)
 
 

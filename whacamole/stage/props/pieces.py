@@ -1,5 +1,7 @@
 """Pieces that furniture is put together from: rods, cushions, balls, fields of colour."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -22,8 +24,8 @@ def standing(name: str, parts: list[Part]) -> Prop:
     return Prop(name, (float(w), float(d), float(h)), placed)
 
 
-def box_part(finish: str, *corners: tuple[float, float, float, float, float, float]) -> Part:
-    """Return boxes as one part, each from its low corner (x, y, z) to its high one [m]."""
+def box_part(finish: str, *corners: Sequence[float]) -> Part:
+    """Return boxes as one part; each is its low and its high corner, six numbers [m]."""
     both = np.asarray(corners)
     return Part(boxes(both[:, :3], both[:, 3:]), finish)
 
@@ -81,7 +83,8 @@ def cushion(base: Vector, size: Vector, radius: float, puff: float = 0.0, lean: 
     su, sv = (grid.ravel() for grid in np.meshgrid(sign, sign, indexing="ij"))
     first = (np.arange(5)[:, None] * 6 + np.arange(5)).ravel()
     quads = np.stack([first, first + 6, first + 7, first + 1], axis=1)
-    points, faces, uv = [], [], []
+    points: list[Floats] = []
+    faces, uv = [], []
     for k, i, j in _SIDES:
         for end in (1.0, -1.0):
             direction, core = np.empty((36, 3)), np.empty((36, 3))

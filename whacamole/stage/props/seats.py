@@ -78,9 +78,11 @@ def chair(rng: np.random.Generator) -> Prop:
     inner = half - 0.03
     if rng.random() < 0.5:
         heights = np.linspace(0.62, height - 0.06, int(rng.integers(2, 4)))
-        slats = [(-inner, rear - 0.035 + 0.05 * (z - 0.62), z, inner, rear - 0.02 + 0.05 * (z - 0.62), z + 0.05)
-                 for z in heights]  # fmt: skip
-        parts.append(box_part("wood", *[tuple(map(float, slat)) for slat in slats]))  # type: ignore[misc]
+        slats = [
+            (-inner, rear - 0.035 + 0.05 * (z - 0.62), z, inner, rear - 0.02 + 0.05 * (z - 0.62), z + 0.05)
+            for z in heights
+        ]
+        parts.append(box_part("wood", *slats))
     else:
         parts.append(
             Part(
@@ -98,6 +100,8 @@ def pouf(rng: np.random.Generator) -> Prop:
     size = (2 * radius, 2 * radius, height - 0.03)
     return standing(
         "pouf",
-        [Part(cushion((0.0, 0.0, 0.03), size, radius * 0.9, 0.0), "accent", smooth=True),
-         Part(cylinder((0.0, 0.0, 0.0), radius * 0.8, 0.06), "dark")],
-    )  # fmt: skip
+        [
+            Part(cushion((0.0, 0.0, 0.03), size, radius * 0.9, 0.0), "accent", smooth=True),
+            Part(cylinder((0.0, 0.0, 0.0), radius * 0.8, 0.06), "dark"),
+        ],
+    )

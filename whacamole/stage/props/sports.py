@@ -1,5 +1,7 @@
 """What stands in a sports hall: wall bars, benches, mats, vaulting boxes, goals, hoops."""
 
+import itertools
+
 import numpy as np
 
 from whacamole.stage.props.pieces import box_part, cushion, rod, standing
@@ -92,14 +94,24 @@ def goal(rng: np.random.Generator) -> Prop:
         parts.append(box_part("white" if k % 2 == 0 else "band", bar))
     frame = []
     for s in (-1.0, 1.0):
-        frame += [rod((s * x, -0.4, 0.03), (s * x, 0.42, 0.03), 0.02), rod((s * x, -0.4, 2.02), (s * x, 0.15, 1.98), 0.02),
-                  rod((s * x, 0.15, 1.98), (s * x, 0.42, 0.03), 0.02)]  # fmt: skip
+        frame += [
+            rod((s * x, -0.4, 0.03), (s * x, 0.42, 0.03), 0.02),
+            rod((s * x, -0.4, 2.02), (s * x, 0.15, 1.98), 0.02),
+            rod((s * x, 0.15, 1.98), (s * x, 0.42, 0.03), 0.02),
+        ]
     frame += [rod((-x, 0.42, 0.03), (x, 0.42, 0.03), 0.02), rod((-x, 0.15, 1.98), (x, 0.15, 1.98), 0.02)]
     cords = [
         rod((float(at), 0.15, 1.98), (float(at), 0.42, 0.03), 0.004, 4) for at in np.linspace(-x, x, 22)[1:-1]
     ]
-    cords += [rod((-x, 0.15 + 0.27 * k / 14, 1.98 - 1.95 * k / 14), (x, 0.15 + 0.27 * k / 14, 1.98 - 1.95 * k / 14), 0.004, 4)
-              for k in range(1, 14)]  # fmt: skip
+    cords += [
+        rod(
+            (-x, 0.15 + 0.27 * k / 14, 1.98 - 1.95 * k / 14),
+            (x, 0.15 + 0.27 * k / 14, 1.98 - 1.95 * k / 14),
+            0.004,
+            4,
+        )
+        for k in range(1, 14)
+    ]
     return standing("goal", [*parts, Part(joined(frame), "white"), Part(joined(cords), "white")])
 
 
@@ -123,8 +135,10 @@ def ball_cage(rng: np.random.Generator) -> Prop:
         tilted(moved(lathe([(0.06, -0.02), (0.06, 0.02)], 12), (0.0, 0.0, 0.0)), (np.pi / 2, 0.0, 0.0))
         for _ in range(4)
     ]
-    feet = [moved(w, (sx * (x - 0.06), sy * (y - 0.06), 0.06)) for w, (sx, sy) in
-            zip(wheels, [(-1, -1), (-1, 1), (1, -1), (1, 1)], strict=True)]  # fmt: skip
+    feet = [
+        moved(w, (sx * (x - 0.06), sy * (y - 0.06), 0.06))
+        for w, (sx, sy) in zip(wheels, [(-1, -1), (-1, 1), (1, -1), (1, 1)], strict=True)
+    ]
     parts = [
         Part(joined(wires), "metal"),
         Part(joined(feet), "dark"),
@@ -146,14 +160,29 @@ def hoop(rng: np.random.Generator) -> Prop:
     """A backboard on a bracket with ring and net; its underside is the net's hem."""
     reach = float(rng.uniform(0.7, 1.2))
     board = box_part("white", (-0.9, -0.015, RING - 0.15, 0.9, 0.015, RING + 0.9))
-    square = [(-0.295, -0.018, RING, -0.245, -0.015, RING + 0.45), (0.245, -0.018, RING, 0.295, -0.015, RING + 0.45),
-              (-0.295, -0.018, RING, 0.295, -0.015, RING + 0.05), (-0.295, -0.018, RING + 0.4, 0.295, -0.015, RING + 0.45)]  # fmt: skip
-    edge = [(-0.9, -0.018, RING - 0.15, 0.9, -0.015, RING - 0.1), (-0.9, -0.018, RING + 0.85, 0.9, -0.015, RING + 0.9),
-            (-0.9, -0.018, RING - 0.15, -0.85, -0.015, RING + 0.9), (0.85, -0.018, RING - 0.15, 0.9, -0.015, RING + 0.9)]  # fmt: skip
+    square = [
+        (-0.295, -0.018, RING, -0.245, -0.015, RING + 0.45),
+        (0.245, -0.018, RING, 0.295, -0.015, RING + 0.45),
+        (-0.295, -0.018, RING, 0.295, -0.015, RING + 0.05),
+        (-0.295, -0.018, RING + 0.4, 0.295, -0.015, RING + 0.45),
+    ]
+    edge = [
+        (-0.9, -0.018, RING - 0.15, 0.9, -0.015, RING - 0.1),
+        (-0.9, -0.018, RING + 0.85, 0.9, -0.015, RING + 0.9),
+        (-0.9, -0.018, RING - 0.15, -0.85, -0.015, RING + 0.9),
+        (0.85, -0.018, RING - 0.15, 0.9, -0.015, RING + 0.9),
+    ]
     angles = np.linspace(0.0, 2.0 * np.pi, 17)
     middle, radius = -0.375, 0.225
-    ring = [rod((radius * np.cos(a), middle + radius * np.sin(a), RING), (radius * np.cos(b), middle + radius * np.sin(b), RING), 0.01, 6)
-            for a, b in zip(angles[:-1], angles[1:], strict=True)]  # fmt: skip
+    ring = [
+        rod(
+            (radius * np.cos(a), middle + radius * np.sin(a), RING),
+            (radius * np.cos(b), middle + radius * np.sin(b), RING),
+            0.01,
+            6,
+        )
+        for a, b in itertools.pairwise(angles)
+    ]
     cords = []
     for a in angles[:-1]:
         for twist in (-0.4, 0.4):
@@ -162,6 +191,11 @@ def hoop(rng: np.random.Generator) -> Prop:
     arms = [
         rod((s * 0.5, 0.015, z), (s * 0.7, reach, z + 0.1), 0.03) for s in (-1, 1) for z in (RING, RING + 0.7)
     ]
-    parts = [board, box_part("dark", *square, *edge), Part(joined(ring), "ball"), Part(joined(cords), "white"),
-             Part(joined(arms), "dark")]  # fmt: skip
+    parts = [
+        board,
+        box_part("dark", *square, *edge),
+        Part(joined(ring), "ball"),
+        Part(joined(cords), "white"),
+        Part(joined(arms), "dark"),
+    ]
     return standing("hoop", parts)

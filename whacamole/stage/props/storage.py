@@ -1,5 +1,7 @@
 """What stands against the walls of a home: bookcases, sideboards, a television on its bench, a kitchen."""
 
+import itertools
+
 import numpy as np
 
 from whacamole.stage.props.pieces import box_part, in_cells, legs, rod, standing
@@ -77,10 +79,21 @@ def _fronts(
 ) -> list[Part]:
     """Doors side by side with gaps between them, and their handles, before the plane ``y``."""
     edges = np.linspace(left, right, count + 1)
-    doors = [(float(a) + 0.003, y - 0.018, bottom + 0.003, float(b) - 0.003, y, top - 0.003)
-             for a, b in zip(edges[:-1], edges[1:], strict=True)]  # fmt: skip
-    grips = [(b - 0.06 if k % 2 == 0 else a + 0.045, y - 0.035, top - 0.2, b - 0.045 if k % 2 == 0 else a + 0.06, y - 0.018, top - 0.07)
-             for k, (a, _, _, b, _, _) in enumerate(doors)]  # fmt: skip
+    doors = [
+        (float(a) + 0.003, y - 0.018, bottom + 0.003, float(b) - 0.003, y, top - 0.003)
+        for a, b in itertools.pairwise(edges)
+    ]
+    grips = [
+        (
+            b - 0.06 if k % 2 == 0 else a + 0.045,
+            y - 0.035,
+            top - 0.2,
+            b - 0.045 if k % 2 == 0 else a + 0.06,
+            y - 0.018,
+            top - 0.07,
+        )
+        for k, (a, _, _, b, _, _) in enumerate(doors)
+    ]
     return [box_part(finish, *doors), box_part("metal", *grips)]
 
 
@@ -102,13 +115,19 @@ def television(rng: np.random.Generator) -> Prop:
     wide = float(rng.uniform(1.05, 1.35))
     tall, x, y = wide * 0.57, width / 2, depth / 2
     z = height + 0.07
-    parts = [box_part("wood", (-x, -y + 0.02, 0.06, x, y, height)),
-             box_part("dark", (-x + 0.06, -y + 0.06, 0.0, x - 0.06, y - 0.04, 0.06))]  # fmt: skip
+    parts = [
+        box_part("wood", (-x, -y + 0.02, 0.06, x, y, height)),
+        box_part("dark", (-x + 0.06, -y + 0.06, 0.0, x - 0.06, y - 0.04, 0.06)),
+    ]
     parts += _fronts("wood", -x, x, 0.07, height - 0.02, -y + 0.02, 3)
     parts.append(
-        box_part("dark", (-wide / 2, 0.02, z, wide / 2, 0.06, z + tall), (-0.2, -0.06, height, 0.2, 0.12, height + 0.012),
-                 (-0.03, 0.03, height, 0.03, 0.055, z))
-    )  # fmt: skip
+        box_part(
+            "dark",
+            (-wide / 2, 0.02, z, wide / 2, 0.06, z + tall),
+            (-0.2, -0.06, height, 0.2, 0.12, height + 0.012),
+            (-0.03, 0.03, height, 0.03, 0.055, z),
+        )
+    )
     parts.append(
         box_part("screen", (-wide / 2 + 0.012, 0.014, z + 0.012, wide / 2 - 0.012, 0.02, z + tall - 0.012))
     )
@@ -120,13 +139,23 @@ def kitchen(rng: np.random.Generator) -> Prop:
     units = int(rng.integers(3, 6))
     x, y = 0.6 * units / 2, 0.3
     end = x + 0.62
-    parts = [box_part("white", (-x, -y + 0.02, 0.1, x, y, 0.87), (-x, y - 0.34, 1.42, x, y, 2.1)),
-             box_part("dark", (-x, -y + 0.07, 0.0, x, y, 0.1), (-x + 0.7, -y + 0.08, 0.905, -x + 1.25, y - 0.1, 0.912)),
-             box_part("wood", (-x, -y - 0.01, 0.87, x, y, 0.905))]  # fmt: skip
+    parts = [
+        box_part("white", (-x, -y + 0.02, 0.1, x, y, 0.87), (-x, y - 0.34, 1.42, x, y, 2.1)),
+        box_part(
+            "dark", (-x, -y + 0.07, 0.0, x, y, 0.1), (-x + 0.7, -y + 0.08, 0.905, -x + 1.25, y - 0.1, 0.912)
+        ),
+        box_part("wood", (-x, -y - 0.01, 0.87, x, y, 0.905)),
+    ]
     parts += _fronts("white", -x, x, 0.12, 0.86, -y + 0.02, units)
     parts += _fronts("white", -x, x, 1.42, 2.1, y - 0.34, units)
-    parts.append(box_part("metal", (x, -y, 0.04, end, y, 1.85), (x + 0.01, -y - 0.02, 0.05, end - 0.01, -y, 1.2),
-                          (x + 0.01, -y - 0.02, 1.22, end - 0.01, -y, 1.84)))  # fmt: skip
+    parts.append(
+        box_part(
+            "metal",
+            (x, -y, 0.04, end, y, 1.85),
+            (x + 0.01, -y - 0.02, 0.05, end - 0.01, -y, 1.2),
+            (x + 0.01, -y - 0.02, 1.22, end - 0.01, -y, 1.84),
+        )
+    )
     parts.append(
         box_part(
             "dark",
@@ -135,8 +164,10 @@ def kitchen(rng: np.random.Generator) -> Prop:
         )
     )
     tap = x - 0.5
-    parts += [Part(rod((tap, y - 0.1, 0.9), (tap, y - 0.1, 1.17), 0.012), "metal"),
-              Part(rod((tap, y - 0.1, 1.165), (tap, y - 0.3, 1.165), 0.01), "metal")]  # fmt: skip
+    parts += [
+        Part(rod((tap, y - 0.1, 0.9), (tap, y - 0.1, 1.17), 0.012), "metal"),
+        Part(rod((tap, y - 0.1, 1.165), (tap, y - 0.3, 1.165), 0.01), "metal"),
+    ]
     parts += [
         Part(moved(part.solid, (0.2, 0.1, 0.0)), part.finish, part.smooth)
         for part in some_things(rng, 2 * x - 0.9, 0.3, 0.905, 2)

@@ -1,5 +1,7 @@
 """What stands in a warehouse: pallets, crates of boards, cartons, barrels, racks, columns."""
 
+import itertools
+
 import numpy as np
 
 from whacamole.stage.props.pieces import box_part, rod, standing
@@ -28,15 +30,21 @@ def _pallet(z: float = 0.0) -> Solid:
         (-x, float(b) - 0.055, 0.122, x, float(b) + 0.055, 0.144)
         for b in np.linspace(-y + 0.055, y - 0.055, 5)
     ]
-    corners = np.asarray([*blocks, *low, *across, *slats]) + [0, 0, z, 0, 0, z]
+    corners = np.asarray([*blocks, *low, *across, *slats]) + np.array([0, 0, z, 0, 0, z])
     return boxes(corners[:, :3], corners[:, 3:])
 
 
 def pallets(rng: np.random.Generator) -> Prop:
     """A stack of empty pallets, none quite straight."""
     count = int(rng.integers(3, 11))
-    stack = [turned(_pallet(), (float(rng.normal(0, 0.012)), float(rng.normal(0, 0.012)), k * PALLET[2]), float(rng.normal(0, 0.02)))
-             for k in range(count)]  # fmt: skip
+    stack = [
+        turned(
+            _pallet(),
+            (float(rng.normal(0, 0.012)), float(rng.normal(0, 0.012)), k * PALLET[2]),
+            float(rng.normal(0, 0.02)),
+        )
+        for k in range(count)
+    ]
     return standing("pallets", [Part(joined(stack), "timber")])
 
 
@@ -46,14 +54,19 @@ def _cartons(rng: np.random.Generator, width: float, depth: float, tallest: floa
     high = float(rng.uniform(0.24, 0.42))
     layers = max(1, int(min(tallest, float(rng.uniform(0.5, 1.4))) / high))
     sx, sy = width / nx, depth / ny
-    low = [(-width / 2 + i * sx, -depth / 2 + j * sy, k * high) for k in range(layers) for i in range(nx) for j in range(ny)
-           if k < layers - 1 or k == 0 or rng.random() < 0.7]  # fmt: skip
+    low = [
+        (-width / 2 + i * sx, -depth / 2 + j * sy, k * high)
+        for k in range(layers)
+        for i in range(nx)
+        for j in range(ny)
+        if k < layers - 1 or k == 0 or rng.random() < 0.7
+    ]
     corners = (
         np.asarray(low)
         + 0.004
         + np.column_stack([rng.uniform(0, 0.006, (len(low), 2)), np.full(len(low), -0.004)])
     )
-    return boxes(corners, corners + [sx - 0.014, sy - 0.014, high - 0.002])
+    return boxes(corners, corners + np.array([sx - 0.014, sy - 0.014, high - 0.002]))
 
 
 def cartons(rng: np.random.Generator) -> Prop:
@@ -70,8 +83,12 @@ def _crate(size: tuple[float, float, float]) -> list[Corners]:
     found: list[Corners] = [(-x + 0.03, -y + 0.03, 0.02, x - 0.03, y - 0.03, h - 0.02)]
     for k in range(rows):
         z0, z1 = 0.02 + k * tall + 0.004, 0.02 + (k + 1) * tall - 0.004
-        found += [(-x + 0.018, -y + 0.018, z0, x - 0.018, -y + 0.034, z1), (-x + 0.018, y - 0.034, z0, x - 0.018, y - 0.018, z1),
-                  (-x + 0.018, -y + 0.034, z0, -x + 0.034, y - 0.034, z1), (x - 0.034, -y + 0.034, z0, x - 0.018, y - 0.034, z1)]  # fmt: skip
+        found += [
+            (-x + 0.018, -y + 0.018, z0, x - 0.018, -y + 0.034, z1),
+            (-x + 0.018, y - 0.034, z0, x - 0.018, y - 0.018, z1),
+            (-x + 0.018, -y + 0.034, z0, -x + 0.034, y - 0.034, z1),
+            (x - 0.034, -y + 0.034, z0, x - 0.018, y - 0.034, z1),
+        ]
     for sx in (-1, 1):
         for sy in (-1, 1):
             a, b = sorted((sx * x, sx * (x - 0.09)))
@@ -87,7 +104,7 @@ def _crate(size: tuple[float, float, float]) -> list[Corners]:
     slats = np.linspace(-y + 0.01, y - 0.01, max(3, round(2 * y / 0.14)) + 1)
     found += [
         (-x + 0.018, float(a) + 0.004, h - 0.018, x - 0.018, float(b) - 0.004, h)
-        for a, b in zip(slats[:-1], slats[1:], strict=True)
+        for a, b in itertools.pairwise(slats)
     ]
     return found
 
@@ -112,9 +129,21 @@ def crates(rng: np.random.Generator) -> Prop:
 def barrels(rng: np.random.Generator) -> Prop:
     """One to four steel drums, with two hoops and a rim each."""
     r, h = 0.29, 0.88
-    profile = [(r - 0.012, 0.0), (r, 0.008), (r - 0.008, 0.02), (r - 0.008, 0.28), (r + 0.008, 0.295), (r - 0.008, 0.31),
-               (r - 0.008, 0.57), (r + 0.008, 0.585), (r - 0.008, 0.6), (r - 0.008, h - 0.02), (r, h - 0.008), (r - 0.012, h),
-               (r - 0.02, h - 0.015)]  # fmt: skip
+    profile = [
+        (r - 0.012, 0.0),
+        (r, 0.008),
+        (r - 0.008, 0.02),
+        (r - 0.008, 0.28),
+        (r + 0.008, 0.295),
+        (r - 0.008, 0.31),
+        (r - 0.008, 0.57),
+        (r + 0.008, 0.585),
+        (r - 0.008, 0.6),
+        (r - 0.008, h - 0.02),
+        (r, h - 0.008),
+        (r - 0.012, h),
+        (r - 0.02, h - 0.015),
+    ]
     count = int(rng.integers(1, 5))
     spots = [(0.0, 0.0), (0.62, 0.0), (0.31, 0.54), (0.93, 0.54)][:count]
     drum = lathe(profile, 28)
@@ -138,19 +167,37 @@ def pallet_rack(rng: np.random.Generator) -> Prop:
             for s in (-1, 1)
         ]
         zigzag = np.arange(0.2, height - 0.2, 0.6)
-        braces += [rod((at, (-1) ** n * (y - 0.06), float(z)), (at, -((-1) ** n) * (y - 0.06), float(z) + 0.55), 0.014, 6)
-                   for n, z in enumerate(zigzag) if z + 0.55 < height]  # fmt: skip
-    beams = [(-x + k * bay + 0.045, s * (y - 0.03) - 0.025, rise * (n + 1) - 0.11, -x + (k + 1) * bay - 0.045, s * (y - 0.03) + 0.025, rise * (n + 1))
-             for k in range(bays) for n in range(levels) for s in (-1, 1)]  # fmt: skip
+        braces += [
+            rod(
+                (at, (-1) ** n * (y - 0.06), float(z)),
+                (at, -((-1) ** n) * (y - 0.06), float(z) + 0.55),
+                0.014,
+                6,
+            )
+            for n, z in enumerate(zigzag)
+            if z + 0.55 < height
+        ]
+    beams = [
+        (
+            -x + k * bay + 0.045,
+            s * (y - 0.03) - 0.025,
+            rise * (n + 1) - 0.11,
+            -x + (k + 1) * bay - 0.045,
+            s * (y - 0.03) + 0.025,
+            rise * (n + 1),
+        )
+        for k in range(bays)
+        for n in range(levels)
+        for s in (-1, 1)
+    ]
     for k in range(bays):
         for n in range(levels + 1):
             for slot in (-0.65, 0.65):
                 if rng.random() < 0.8:
-                    at = (-x + (k + 0.5) * bay + slot + float(rng.normal(0.0, 0.03)), 0.0, rise * n)
-                    wood.append(moved(_pallet(), at))
-                    loads.append(
-                        moved(_cartons(rng, 1.14, 0.76, rise - 0.4), (at[0], at[1], at[2] + PALLET[2]))
-                    )
+                    across, z = -x + (k + 0.5) * bay + slot + float(rng.normal(0.0, 0.03)), rise * n
+                    wood.append(moved(_pallet(), (across, 0.0, z)))
+                    load = _cartons(rng, 1.14, 0.76, rise - 0.4)
+                    loads.append(moved(load, (across, 0.0, z + PALLET[2])))
     parts += [box_part("upright", *posts), Part(joined(braces), "upright"), box_part("beam", *beams)]
     if wood:
         parts += [Part(joined(wood), "timber"), Part(joined(loads), "cardboard")]
@@ -160,8 +207,12 @@ def pallet_rack(rng: np.random.Generator) -> Prop:
 def column(height: float) -> Prop:
     """A steel column of wide flanges on a foot plate, a guard in yellow and black around it."""
     h = 0.12
-    steel = [(-h, -h, 0.0, h, -h + 0.015, height), (-h, h - 0.015, 0.0, h, h, height), (-0.006, -h, 0.0, 0.006, h, height),
-             (-0.18, -0.18, 0.0, 0.18, 0.18, 0.02)]  # fmt: skip
+    steel = [
+        (-h, -h, 0.0, h, -h + 0.015, height),
+        (-h, h - 0.015, 0.0, h, h, height),
+        (-0.006, -h, 0.0, 0.006, h, height),
+        (-0.18, -0.18, 0.0, 0.18, 0.18, 0.02),
+    ]
     parts = [box_part("steel", *steel)]
     for k in range(8):
         z = 0.02 + 0.14 * k
@@ -189,8 +240,16 @@ def trolley(rng: np.random.Generator) -> Prop:
     """A flat trolley with a push bar, and what is on it."""
     x, y = 0.55, 0.33
     parts = [box_part("steel", (-x, -y, 0.18, x, y, 0.22))]
-    wheels = [rod((sx * (x - 0.12), sy * (y - 0.05) - 0.02, 0.08), (sx * (x - 0.12), sy * (y - 0.05) + 0.02, 0.08), 0.08, 14)
-              for sx in (-1, 1) for sy in (-1, 1)]  # fmt: skip
+    wheels = [
+        rod(
+            (sx * (x - 0.12), sy * (y - 0.05) - 0.02, 0.08),
+            (sx * (x - 0.12), sy * (y - 0.05) + 0.02, 0.08),
+            0.08,
+            14,
+        )
+        for sx in (-1, 1)
+        for sy in (-1, 1)
+    ]
     bar = [rod((-x + 0.03, s * (y - 0.05), 0.2), (-x - 0.06, s * (y - 0.05), 0.95), 0.016) for s in (-1, 1)]
     bar.append(rod((-x - 0.06, -y + 0.05, 0.95), (-x - 0.06, y - 0.05, 0.95), 0.016))
     parts += [Part(joined(wheels), "black"), Part(joined(bar), "beam")]

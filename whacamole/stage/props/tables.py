@@ -61,9 +61,12 @@ def some_things(rng: np.random.Generator, width: float, depth: float, z: float, 
 def _apron(width: float, depth: float, bottom: float, top: float) -> Part:
     x, y = width / 2, depth / 2
     return box_part(
-        "wood", (-x, -y, bottom, x, -y + 0.02, top), (-x, y - 0.02, bottom, x, y, top),
-        (-x, -y, bottom, -x + 0.02, y, top), (x - 0.02, -y, bottom, x, y, top),
-    )  # fmt: skip
+        "wood",
+        (-x, -y, bottom, x, -y + 0.02, top),
+        (-x, y - 0.02, bottom, x, y, top),
+        (-x, -y, bottom, -x + 0.02, y, top),
+        (x - 0.02, -y, bottom, x, y, top),
+    )
 
 
 def dining_table(rng: np.random.Generator) -> Prop:
@@ -102,7 +105,12 @@ def desk(rng: np.random.Generator) -> Prop:
         )
     )
     parts.append(
-        box_part("dark", (-0.3, 0.08, top + 0.1, 0.3, 0.11, top + 0.46), (-0.03, 0.1, top, 0.03, 0.13, top + 0.2),
-                 (-0.12, 0.02, top, 0.12, 0.2, top + 0.01), (-0.22, -0.2, top, 0.22, -0.06, top + 0.02))
-    )  # fmt: skip
+        box_part(
+            "dark",
+            (-0.3, 0.08, top + 0.1, 0.3, 0.11, top + 0.46),
+            (-0.03, 0.1, top, 0.03, 0.13, top + 0.2),
+            (-0.12, 0.02, top, 0.12, 0.2, top + 0.01),
+            (-0.22, -0.2, top, 0.22, -0.06, top + 0.02),
+        )
+    )
     return standing("desk", parts)

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from whacamole.stage.floor import Floor
 from whacamole.stage.props import Finishes, Prop, put
@@ -90,7 +91,7 @@ def stand_against(
     return middle
 
 
-def _discs(wall: Wall, piece: Piece, middle: float) -> list[tuple[np.ndarray, float]]:
+def _discs(wall: Wall, piece: Piece, middle: float) -> list[tuple[NDArray[np.float64], float]]:
     """Cover the footprint of a piece with discs: their places in the world, and their radius [m]."""
     wide, deep = piece.half
     long, short = (wide, deep) if wide > deep else (deep, wide)

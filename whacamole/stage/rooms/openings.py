@@ -41,8 +41,12 @@ class WindowKind:
 def ring(rect: Rect, bar: float, near: float, far: float) -> tuple[list[list[float]], list[list[float]]]:
     """Return the corners of four bars just inside a rectangle, from y ``near`` to ``far``."""
     left, right, bottom, top = rect
-    spans = [(left, left + bar, bottom, top), (right - bar, right, bottom, top),
-             (left + bar, right - bar, bottom, bottom + bar), (left + bar, right - bar, top - bar, top)]  # fmt: skip
+    spans = [
+        (left, left + bar, bottom, top),
+        (right - bar, right, bottom, top),
+        (left + bar, right - bar, bottom, bottom + bar),
+        (left + bar, right - bar, top - bar, top),
+    ]
     return [[a, near, c] for a, _, c, _ in spans], [[b, far, d] for _, b, _, d in spans]
 
 
@@ -132,8 +136,10 @@ def _folds(start: float, end: float, bottom: float, top: float, rng: np.random.G
     share = np.linspace(0.0, 1.0, count)
     x = min(start, end) + abs(end - start) * share
     phase = float(rng.uniform(0.0, 6.0)) + 2.0 * np.pi * share * max(3.0, abs(end - start) / 0.11)
-    rows = [np.column_stack([x, -0.05 + wide * np.sin(phase), np.full(count, z)])
-            for z, wide in ((bottom, 0.028), (top, 0.016))]  # fmt: skip
+    rows = [
+        np.column_stack([x, -0.05 + wide * np.sin(phase), np.full(count, z)])
+        for z, wide in ((bottom, 0.028), (top, 0.016))
+    ]
     here = np.arange(count - 1)
     faces = np.stack([here, here + 1, here + 1 + count, here + count], axis=1)
     vertices = np.concatenate(rows)
@@ -145,7 +151,10 @@ def radiator(wall: Wall, x: float, width: float) -> None:
     """Hang a ribbed radiator on the wall."""
     ribs = np.arange(x - width / 2.0, x + width / 2.0 - 0.03, 0.05)
     low = np.column_stack([ribs, np.full(len(ribs), -0.075), np.full(len(ribs), 0.14)])
-    wall.trim.add_boxes("frame", low, low + [0.035, 0.055, 0.54])
-    wall.trim.add_boxes("frame", [[x - width / 2, -0.06, z] for z in (0.17, 0.60)],
-                        [[x + width / 2, -0.02, z + 0.05] for z in (0.17, 0.60)])  # fmt: skip
+    wall.trim.add_boxes("frame", low, low + np.array([0.035, 0.055, 0.54]))
+    wall.trim.add_boxes(
+        "frame",
+        [[x - width / 2, -0.06, z] for z in (0.17, 0.60)],
+        [[x + width / 2, -0.02, z + 0.05] for z in (0.17, 0.60)],
+    )
     wall.take(Rect(x - width / 2, x + width / 2, 0.0, 0.75))

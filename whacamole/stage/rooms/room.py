@@ -105,10 +105,12 @@ def daylight_lamps(
         Lamp(
             position=wall.place((rect.left + rect.right) / 2, 0.12, (rect.bottom + rect.top) / 2),
             target=wall.place((rect.left + rect.right) / 2, 5.0, 0.9),
-            power_w=power / len(chosen), size=min(rect.right - rect.left, rect.top - rect.bottom), color=color,
+            power_w=power / len(chosen),
+            size=min(rect.right - rect.left, rect.top - rect.bottom),
+            color=color,
         )
         for rect in chosen
-    ]  # fmt: skip
+    ]
 
 
 def beams(shell: Room, floor: Floor, size: tuple[float, float], every: float) -> None:

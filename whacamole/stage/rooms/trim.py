@@ -1,5 +1,7 @@
 """What runs along walls and hangs on them: skirting, wainscot, cornice, pictures, clocks."""
 
+import itertools
+
 import numpy as np
 
 from whacamole.stage.props.pieces import in_cells
@@ -13,16 +15,20 @@ __all__ = ["clock", "cornice", "picture", "skirting", "wainscot"]
 
 def skirting(wall: Wall, height: float) -> None:
     """Run a board along the foot of the wall, but for its doors."""
-    gaps = [(a + (0.08 if a > -wall.length / 2 else 0.0), b - (0.08 if b < wall.length / 2 else 0.0))
-            for a, b in wall.gaps(0.0, height)]  # fmt: skip
+    gaps = [
+        (a + (0.08 if a > -wall.length / 2 else 0.0), b - (0.08 if b < wall.length / 2 else 0.0))
+        for a, b in wall.gaps(0.0, height)
+    ]
     wall.trim.add_boxes("frame", [[a, -0.016, 0.0] for a, _ in gaps], [[b, 0.0, height] for _, b in gaps])
 
 
 def cornice(wall: Wall) -> None:
     """Run a moulding along the ceiling."""
     half = wall.length / 2.0
-    low, high = [[-half, -0.05, wall.height - 0.06], [-half, -0.025, wall.height - 0.1]], [
-        [half, 0.0, wall.height], [half, 0.0, wall.height - 0.06]]  # fmt: skip
+    low, high = (
+        [[-half, -0.05, wall.height - 0.06], [-half, -0.025, wall.height - 0.1]],
+        [[half, 0.0, wall.height], [half, 0.0, wall.height - 0.06]],
+    )
     wall.trim.add_boxes("frame", low, high)
 
 
@@ -36,7 +42,7 @@ def wainscot(wall: Wall, height: float, finish: str = "frame") -> None:
         wall.trim.add_boxes(finish, [left, -0.012, 0.0], [right, 0.0, height])
         wall.trim.add_boxes(finish, [left, -0.035, height - 0.03], [right, 0.0, height])
         edges = np.linspace(left, right, max(1, round((right - left) / 0.7)) + 1)
-        for one, other in zip(edges[:-1], edges[1:], strict=True):
+        for one, other in itertools.pairwise(edges):
             if other - one > 0.25:
                 panel = Rect(one + 0.06, other - 0.06, 0.18, height - 0.1)
                 wall.trim.add_boxes(finish, *ring(panel, 0.025, -0.026, -0.012))

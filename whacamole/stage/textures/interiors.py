@@ -24,11 +24,23 @@ CELLS = 4
 """Pictures of ``art`` and colours of ``palette`` to a side."""
 
 MUTED = (
-    (0.30, 0.22, 0.18), (0.52, 0.20, 0.17), (0.70, 0.56, 0.33), (0.22, 0.30, 0.40),
-    (0.26, 0.36, 0.29), (0.78, 0.74, 0.66), (0.40, 0.40, 0.41), (0.62, 0.38, 0.22),
-    (0.17, 0.18, 0.21), (0.55, 0.62, 0.66), (0.47, 0.29, 0.33), (0.86, 0.84, 0.80),
-    (0.72, 0.46, 0.20), (0.35, 0.45, 0.52), (0.58, 0.58, 0.46), (0.64, 0.20, 0.16),
-)  # fmt: skip
+    (0.30, 0.22, 0.18),
+    (0.52, 0.20, 0.17),
+    (0.70, 0.56, 0.33),
+    (0.22, 0.30, 0.40),
+    (0.26, 0.36, 0.29),
+    (0.78, 0.74, 0.66),
+    (0.40, 0.40, 0.41),
+    (0.62, 0.38, 0.22),
+    (0.17, 0.18, 0.21),
+    (0.55, 0.62, 0.66),
+    (0.47, 0.29, 0.33),
+    (0.86, 0.84, 0.80),
+    (0.72, 0.46, 0.20),
+    (0.35, 0.45, 0.52),
+    (0.58, 0.58, 0.46),
+    (0.64, 0.20, 0.16),
+)
 """Colours of books, boxes, vases and such: sixteen, few of them loud."""
 
 
@@ -105,10 +117,9 @@ def _picture(rng: np.random.Generator, side: int) -> Image:
         image = (0.55 + 0.4 * y)[..., None] * np.array([0.80, 0.86, 0.92]) * np.ones((side, side, 1))
         for ridge, color in enumerate(colors[1:4]):
             crest = 0.45 + 0.15 * ridge + 0.06 * noise(rng, side, 1.8)[0]
-            image = np.where(
-                (y > crest)[..., None], color * (1.0 + 0.12 * noise(rng, side, 0.9))[..., None], image
-            )
-        return image
+            land = color * (1.0 + 0.12 * noise(rng, side, 0.9))[..., None]
+            image = np.where((y > crest)[..., None], land, image)
+        return np.asarray(image)
     for color in colors[1:]:
         u, v = x - rng.uniform(0.2, 0.8), y - rng.uniform(0.2, 0.8)
         a, b = rng.uniform(0.08, 0.35, 2)
