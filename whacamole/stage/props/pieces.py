@@ -76,7 +76,7 @@ def cushion(base: Vector, size: Vector, radius: float, puff: float = 0.0, lean: 
         lean: tilt backwards, towards +y [rad].
     """
     half = np.asarray(size, float) / 2.0
-    radius = min(radius, float(half.min()))
+    radius = min(radius, 0.98 * float(half.min()))  # something is left between the edges
     quarter = np.tan(np.radians([0.0, 25.0, 45.0]))
     line, sign = np.concatenate([-quarter[::-1], quarter]), np.repeat([-1.0, 1.0], 3)
     u, v = (grid.ravel() for grid in np.meshgrid(line, line, indexing="ij"))
