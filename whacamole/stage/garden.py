@@ -1,12 +1,21 @@
-"""What a park has besides its trees: a gravel path, benches, clipped hedges, flower beds, fences."""
+"""What a park has besides its trees: a gravel path, grass in tufts, hedges, flower beds, benches, fences."""
+
+from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from whacamole.stage.floor import Floor
-from whacamole.stage.props import Finishes, Part, Prop, block, furnish
-from whacamole.stage.shapes import box, strip
+from whacamole.stage.props import Finishes, furnish
+from whacamole.stage.props.growth import blades
+from whacamole.stage.props.park_furniture import bench, bin_, fence, lamp_post
+from whacamole.stage.props.plants import bush, flower_bed, hedge, plant_finishes
+from whacamole.stage.shapes import box, joined, strip
 from whacamole.stage.stage import SetBuilder
 from whacamole.stage.textures import TEXTURES
+from whacamole.stage.textures.foliage import leaf_tones
 
 __all__ = ["lay_out_garden"]
 
@@ -19,32 +28,54 @@ ASIDE = (1.2, 3.0)
 WALKWAY_HEIGHT = 0.01
 """Of the gravel over the grass [m]; nobody treads on it."""
 
-BENCH = (1.5, 0.5, 0.85)
-HEDGE = ((2.5, 6.0), (0.6, 1.0), (0.6, 1.3))
-BED = ((1.4, 3.0), (1.0, 1.8), (0.1, 0.22))
-FENCE_LENGTH = (4.0, 9.0)
-"""Sizes of what stands there: width, depth and height [m]."""
+EDGING = (0.06, 0.05)
+"""Width and height of the stones along the path [m]."""
+
+TUFTS_A_SQUARE_METRE = 5.0
+MOST_TUFTS = 3200
+BLADES = 5
+"""Of grass in a tuft."""
+
+TUFTS_BEYOND = 8.0
+"""How far outside the rectangle of the paths [m]; farther off they cannot be told from the painted grass."""
+
+UNTRODDEN = 0.6
+"""From the people's paths to the nearest tuft [m]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Walkway:
+    """A straight path: all places whose product with ``normal`` (2,) is ``offset`` ± ``width`` / 2 [m]."""
+
+    normal: NDArray[np.float64]
+    offset: float
+    width: float
 
 
 def lay_out_garden(build: SetBuilder, floor: Floor, rng: np.random.Generator) -> None:
     """Lay a path beside the people and stand the furniture of a park around them."""
-    _walkway(build, floor, rng)
+    walkway = _walkway(build, floor, rng)
+    _tufts(build, floor, walkway, rng)
     finishes: Finishes = {
-        "hedge": (build.material("hedge", TEXTURES["leaves"], rng, metres=1.0, roughness=0.9),),
-        "blossom": (build.material("blossom", TEXTURES["flowers"], rng, metres=1.5, roughness=0.9),),
-        "planks": (build.material("planks", TEXTURES["wood"], rng, metres=0.5),),
+        **plant_finishes(build, rng),
+        "planks": (build.material("planks", TEXTURES["wood"], rng, metres=0.9),),
+        "iron": (build.plain("iron", (0.15, 0.17, 0.16), roughness=0.5, metallic=0.4),),
+        "lantern": (build.plain("lantern", (0.86, 0.86, 0.80), roughness=0.15),),
+        "stone": (build.material("bed-stone", TEXTURES["concrete"], rng, metres=1.2),),
     }
-    furnish(
-        build, floor, (block("hedge", "hedge", *HEDGE),), int(rng.integers(4, 8)), finishes, rng, beyond=11.0
-    )
-    beds = (block("flower-bed", "blossom", *BED),)
-    furnish(build, floor, beds, int(rng.integers(4, 8)), finishes, rng, beyond=6.0)
-    furnish(build, floor, (_bench,), int(rng.integers(2, 5)), finishes, rng, beyond=6.0)
-    furnish(build, floor, (_fence,), int(rng.integers(2, 5)), finishes, rng, beyond=13.0)
+    for makers, fewest, most, beyond in (
+        ((hedge,), 4, 8, 11.0),
+        ((flower_bed,), 4, 8, 6.0),
+        ((bench,), 2, 5, 6.0),
+        ((bush,), 5, 10, 9.0),
+        ((lamp_post, bin_), 2, 5, 6.0),
+        ((fence,), 2, 5, 13.0),
+    ):
+        furnish(build, floor, makers, int(rng.integers(fewest, most)), finishes, rng, beyond=beyond)
 
 
-def _walkway(build: SetBuilder, floor: Floor, rng: np.random.Generator) -> None:
-    """A straight path of gravel past the people, kept free of everything that stands."""
+def _walkway(build: SetBuilder, floor: Floor, rng: np.random.Generator) -> Walkway:
+    """A straight path of gravel past the people, edged with stone, kept free of everything that stands."""
     gravel = build.material("gravel", TEXTURES["gravel"], rng, metres=2.2)
     angle, width = float(rng.uniform(0.0, 2.0 * np.pi)), float(rng.uniform(*WALKWAY))
     normal = np.array([np.cos(angle), np.sin(angle)])
@@ -52,25 +83,29 @@ def _walkway(build: SetBuilder, floor: Floor, rng: np.random.Generator) -> None:
     offset = float((floor.paths @ normal).max() + rng.uniform(*ASIDE) + width / 2.0)
     reach = floor.reach + 40.0
     build.add("walkway", strip(normal * offset, along, 2.0 * reach, width, WALKWAY_HEIGHT), gravel)
+    stones = []
+    for side in (-1.0, 1.0):
+        x, y = normal * (offset + side * (width + EDGING[0]) / 2.0)
+        stones.append(box((float(x), float(y), 0.0), (EDGING[0], 2.0 * reach, EDGING[1]), angle))
+    edging = build.material("edging", TEXTURES["concrete"], rng, metres=0.8)
+    build.add("edging", joined(stones), edging)
     for step in np.arange(-reach, reach, width):
         floor.reserve(normal * offset + step * along, width / 2.0)
+    return Walkway(normal, offset, width)
 
 
-def _bench(rng: np.random.Generator) -> Prop:
-    """A seat and a back of planks on two ends."""
-    width, depth, height = BENCH
-    aside, rear = width / 2 - 0.03, depth / 2 - 0.0125
-    ends = [box((side * aside, 0.0, 0.0), (0.06, depth, 0.41)) for side in (-1.0, 1.0)]
-    posts = [box((side * aside, rear, 0.45), (0.06, 0.025, height - 0.45)) for side in (-1.0, 1.0)]
-    seat = box((0.0, 0.0, 0.41), (width, depth, 0.04))
-    backs = [box((0.0, rear, z), (width, 0.025, 0.1)) for z in (0.58, height - 0.1)]
-    return Prop("bench", BENCH, tuple(Part(solid, "planks") for solid in (*ends, *posts, seat, *backs)))
-
-
-def _fence(rng: np.random.Generator) -> Prop:
-    """Posts a metre and a half apart with three rails."""
-    length, depth, height = float(rng.uniform(*FENCE_LENGTH)), 0.06, 1.0
-    spots = np.linspace(-length / 2 + 0.04, length / 2 - 0.04, max(2, round(length / 1.5)))
-    posts = [box((float(x), 0.0, 0.0), (0.08, depth, height)) for x in spots]
-    rails = [box((0.0, 0.0, z), (length, 0.03, 0.1)) for z in (0.2, 0.5, 0.8)]
-    return Prop("fence", (length, depth, height), tuple(Part(solid, "planks") for solid in (*posts, *rails)))
+def _tufts(build: SetBuilder, floor: Floor, walkway: Walkway, rng: np.random.Generator) -> None:
+    """Grow tufts of grass under 10 cm where nobody treads."""
+    low, high = floor.low - TUFTS_BEYOND, floor.high + TUFTS_BEYOND
+    count = min(MOST_TUFTS, int(TUFTS_A_SQUARE_METRE * np.prod(high - low)))
+    place = rng.uniform(low, high, (count, 2))
+    grown = cKDTree(floor.paths).query(place)[0] > UNTRODDEN
+    grown &= np.abs(place @ walkway.normal - walkway.offset) > walkway.width / 2.0 + 0.15
+    place = place[grown]
+    size = rng.uniform(0.5, 1.0, len(place))
+    base = np.repeat(place, BLADES, axis=0) + rng.normal(0.0, 0.018, (BLADES * len(place), 2))
+    height = np.repeat(size, BLADES) * rng.uniform(0.04, 0.09, len(base))
+    lean = rng.normal(0.0, 0.45, (len(base), 2)) * height[:, None]
+    foot, tips = np.column_stack([base, 0.0 * height]), np.column_stack([base + lean, height])
+    tones = build.material("tufts", partial(leaf_tones, season="grass"), rng, metres=1.0, roughness=0.8)
+    build.add("tufts", blades(foot, tips, 0.009, rng), tones)

@@ -76,6 +76,8 @@ def plant_trees(
     bark = build.material("bark", TEXTURES["bark"], rng, metres=0.8, roughness=0.95)
     kinds = [KINDS[index] for index in rng.choice(len(KINDS), int(rng.integers(2, 4)), replace=False)]
     crowns = [_tones(build, index, kind, rng) for index, kind in enumerate(kinds)]
+    woods: list[Solid] = []
+    foliage: list[list[Solid]] = [[] for _ in kinds]
     spans = [(nearest, beyond) for count, nearest, beyond in rings for _ in range(count)]
     for index, (nearest, beyond) in enumerate(spans):
         girth = float(rng.uniform(0.11, 0.2))
@@ -86,8 +88,14 @@ def plant_trees(
         trunk, branches, crown = _grown(kinds[which], girth, nearest >= FAR, rng)
         at = (*place, 0.0)
         _stand(build, f"trunk-{index}", moved(trunk, at), bark)
-        build.add(f"branches-{index}", moved(branches, at), bark, smooth=True)
-        build.add(f"crown-{index}", moved(crown, at), crowns[which])
+        woods.append(moved(branches, at))
+        foliage[which].append(moved(crown, at))
+    # One mesh for all crowns of a kind: fewer, larger meshes cost a renderer less.
+    if woods:
+        build.add("branches", joined(woods), bark, smooth=True)
+    for index, (tone, solids) in enumerate(zip(crowns, foliage, strict=True)):
+        if solids:
+            build.add(f"crowns-{index}", joined(solids), tone)
 
 
 def _tones(build: SetBuilder, index: int, kind: Kind, rng: np.random.Generator) -> Material:
