@@ -24,7 +24,7 @@ def park(rng: np.random.Generator, paths: NDArray[np.float64], folder: Path | No
     stone = paint_finishes(build, {"stone": (("concrete", 1.5), ("brick", 1.6), ("plaster", 2.0))}, rng)
     furnish(build, floor, walls, int(rng.integers(2, 5)), stone, rng)
     rings = ((int(rng.integers(6, 10)), CLEARANCE + 1.0, 14.0), (int(rng.integers(10, 16)), 14.0, 30.0))
-    plant_trees(build, floor, rings, rng)
     sun, sky = daylight(rng, (25.0, 65.0))
+    plant_trees(build, floor, rings, sun, rng)
     horizon(build, floor, "country", rng)
     return build.stage("park", (sun,), sky, exposure=0.7)

@@ -5,12 +5,14 @@ import pytest
 import trimesh
 from scipy.spatial import cKDTree
 
+from render_jobs import Sun
 from whacamole.stage import SetBuilder
 from whacamole.stage.floor import Floor
 from whacamole.stage.props import plant_trees
 from whacamole.stage.props.growth import leafy, limb, on_box
 from whacamole.stage.props.trees import HEADROOM, TRUNK
 
+SUN = Sun(direction=(-0.7, 0.3, -0.5))
 WALK = np.stack([np.linspace(-4.0, 4.0, 80), np.zeros(80)], axis=1)
 
 
@@ -52,7 +54,7 @@ def test_leaves_of_a_box_lie_on_its_sides_and_top() -> None:
 @pytest.mark.parametrize("seed", range(5))
 def test_crowns_hang_above_the_heads_and_trunks_stand_on_the_ground(seed: int) -> None:
     build, floor = SetBuilder(None), Floor(WALK)
-    plant_trees(build, floor, ((6, 4.2, 14.0), (8, 14.0, 30.0)), np.random.default_rng(seed))
+    plant_trees(build, floor, ((6, 4.2, 14.0), (8, 14.0, 30.0)), SUN, np.random.default_rng(seed))
     trunks, branches, crowns = (
         [mesh for mesh in build.meshes if mesh.name.startswith(name)]
         for name in ("trunk", "branches", "crowns")
@@ -62,6 +64,9 @@ def test_crowns_hang_above_the_heads_and_trunks_stand_on_the_ground(seed: int) -
     leaves = np.concatenate([mesh.vertices for mesh in crowns]).astype(np.float64)
     assert leaves[:, 2].min() >= HEADROOM
     assert sum(len(mesh.faces) for mesh in (*crowns, *branches, *trunks)) < 4500 * len(trunks)
+    fall = (leaves[:, 2:] - 1.5) / -SUN.direction[2]
+    shadow = leaves[:, :2] + fall * SUN.direction[:2]
+    assert cKDTree(WALK).query(shadow)[0].min() > 0.6, "faces are in the sun"
     feet = np.stack([trunk.vertices[:, :2].mean(axis=0) for trunk in trunks]).astype(np.float64)
     low = branches[0].vertices[branches[0].vertices[:, 2] < HEADROOM].astype(np.float64)
     assert cKDTree(feet).query(low[:, :2])[0].max() < 0.5, "below the crown there is only the trunk"

@@ -6,11 +6,12 @@ from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
-from render_jobs import Material
+from render_jobs import Material, Sun
 from whacamole.stage.floor import Floor
 from whacamole.stage.props.growth import leafy, limb, scattered
-from whacamole.stage.shapes import Solid, joined, moved
+from whacamole.stage.shapes import Solid, Vector, joined, moved
 from whacamole.stage.stage import SetBuilder
 from whacamole.stage.textures import TEXTURES
 from whacamole.stage.textures.foliage import leaf_tones
@@ -27,6 +28,15 @@ TRUNK = 2.4
 
 FAR = 14.0
 """Trees planted from here on [m] have fewer, larger leaves."""
+
+FACE_HEIGHT = 1.5
+"""Where faces are [m]."""
+
+IN_THE_SUN = 0.8
+"""From the people's paths to the shadow of a crown [m]."""
+
+_TRIES = 5
+_SPARSE = 16
 
 CLUMP_OF_FAR = 1.6
 """How much larger."""
@@ -66,9 +76,13 @@ KINDS = (
 
 
 def plant_trees(
-    build: SetBuilder, floor: Floor, rings: Sequence[tuple[int, float, float]], rng: np.random.Generator
+    build: SetBuilder,
+    floor: Floor,
+    rings: Sequence[tuple[int, float, float]],
+    sun: Sun,
+    rng: np.random.Generator,
 ) -> None:
-    """Plant trees of two or three kinds.
+    """Plant trees of two or three kinds, where their crowns leave the people's faces in the sun.
 
     Args:
         rings: how many, from how near the paths, to how far outside their rectangle [m].
@@ -80,22 +94,42 @@ def plant_trees(
     foliage: list[list[Solid]] = [[] for _ in kinds]
     spans = [(nearest, beyond) for count, nearest, beyond in rings for _ in range(count)]
     for index, (nearest, beyond) in enumerate(spans):
-        girth = float(rng.uniform(0.11, 0.2))
-        place = floor.spot(rng, girth + 0.7, beyond, nearest)
+        girth, which = float(rng.uniform(0.11, 0.2)), int(rng.integers(len(kinds)))
+        trunk, branches, crown = _grown(kinds[which], girth, nearest >= FAR, rng)
+        place = _sunny_spot(floor, crown, girth + 0.7, (nearest, beyond), sun, rng)
         if place is None:
             continue
-        which = int(rng.integers(len(kinds)))
-        trunk, branches, crown = _grown(kinds[which], girth, nearest >= FAR, rng)
-        at = (*place, 0.0)
-        _stand(build, f"trunk-{index}", moved(trunk, at), bark)
-        woods.append(moved(branches, at))
-        foliage[which].append(moved(crown, at))
+        _stand(build, f"trunk-{index}", moved(trunk, place), bark)
+        woods.append(moved(branches, place))
+        foliage[which].append(moved(crown, place))
     # One mesh for all crowns of a kind: fewer, larger meshes cost a renderer less.
     if woods:
         build.add("branches", joined(woods), bark, smooth=True)
     for index, (tone, solids) in enumerate(zip(crowns, foliage, strict=True)):
         if solids:
             build.add(f"crowns-{index}", joined(solids), tone)
+
+
+def _sunny_spot(
+    floor: Floor,
+    crown: Solid,
+    footprint: float,
+    span: tuple[float, float],
+    sun: Sun,
+    rng: np.random.Generator,
+) -> Vector | None:
+    """Draw a place from which the crown's shadow, at the height of faces, stays off the people's paths."""
+    leaves = crown.vertices[::_SPARSE].astype(np.float64)
+    fall = (leaves[:, 2:] - FACE_HEIGHT) / -sun.direction[2]
+    shadow = leaves[:, :2] + fall * np.asarray(sun.direction[:2])
+    people = cKDTree(floor.paths)
+    for _ in range(_TRIES):
+        place = floor.spot(rng, footprint, span[1], span[0])
+        if place is None:
+            return None
+        if np.min(people.query(shadow + place)[0]) > IN_THE_SUN:
+            return (*place, 0.0)
+    return None
 
 
 def _tones(build: SetBuilder, index: int, kind: Kind, rng: np.random.Generator) -> Material:

@@ -7,7 +7,7 @@ detail at many scales, because visual odometry and the eye both need something t
 from collections.abc import Callable
 
 from whacamole.stage.textures.floors import boards, carpet, floor_tiles, herringbone, poured
-from whacamole.stage.textures.foliage import bark, flowers, leaves
+from whacamole.stage.textures.foliage import bark
 from whacamole.stage.textures.grounds import asphalt, concrete, grass, gravel, paving
 from whacamole.stage.textures.interiors import (
     art,
@@ -40,11 +40,9 @@ TEXTURES: dict[str, Callable[..., Image]] = {
     "cloth": cloth,
     "concrete": concrete,
     "floor-tiles": floor_tiles,
-    "flowers": flowers,
     "grass": grass,
     "gravel": gravel,
     "herringbone": herringbone,
-    "leaves": leaves,
     "paint": paint,
     "palette": palette,
     "paving": paving,
