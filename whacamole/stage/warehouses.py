@@ -111,18 +111,19 @@ def _roller_door(wall: Wall, floor: Floor, x: float, width: float, height: float
 def _cladding(wall: Wall, top: float, rng: np.random.Generator) -> None:
     """Clad the wall with ribbed sheet between its openings."""
     pitch = float(rng.choice([0.2, 0.25, 0.33]))
-    ribs = np.arange(-wall.length / 2, wall.length / 2 - 0.1, pitch)
-    free = [
-        all(
-            r + 0.1 < hole.left - 0.15 or r > hole.right + 0.15 or hole.bottom > top for hole in wall.openings
-        )
-        for r in ribs
-    ]
-    ribs = ribs[np.asarray(free)]
-    low = np.column_stack([ribs, np.full(len(ribs), -0.035), np.full(len(ribs), 0.1)])
-    wall.trim.add_boxes(
-        "sheet", low, np.column_stack([ribs + 0.4 * pitch, np.zeros(len(ribs)), np.full(len(ribs), top)])
-    )
+    edge = wall.length / 2
+    for a, b in wall.gaps(0.0, top):
+        left, right = a + (0.15 if a > -edge else 0.0), b - (0.15 if b < edge else 0.0)
+        if right - left < pitch:
+            continue
+        wall.trim.add_boxes("sheet", [left, -0.008, 0.1], [right, 0.0, top])
+        ribs = np.arange(left, right - 0.4 * pitch, pitch)
+        low = np.column_stack([ribs, np.full(len(ribs), -0.035), np.full(len(ribs), 0.1)])
+        wall.trim.add_boxes("sheet", low, low + np.array([0.4 * pitch, 0.035, top - 0.1]))
+    for hole in wall.openings:
+        above = hole.top + 0.3
+        if hole.bottom < top and above < top:
+            wall.trim.add_boxes("sheet", [hole.left - 0.15, -0.008, above], [hole.right + 0.15, 0.0, top])
 
 
 def _store_materials(
