@@ -61,6 +61,8 @@ class Material(SceneValue):
     """The texture repeats this many times across the unit square of the UV map."""
     emission: Colour = (1.0, 1.0, 1.0)
     emission_strength: NonNegative = 0.0
+    emission_lights: bool = True
+    """Whether rays are aimed at what glows. Without, it looks lit at no cost in light samples: a shade."""
     double_sided: bool = True
 
 

@@ -31,6 +31,8 @@ def build_material(material: Material) -> Any:
     shader["Specular IOR Level"].default_value = material.specular
     shader["Emission Color"].default_value = (*linear(material.emission), 1.0)
     shader["Emission Strength"].default_value = material.emission_strength
+    if not material.emission_lights:
+        made.cycles.emission_sampling = "NONE"
     shader["Subsurface Weight"].default_value = material.subsurface
     shader["Subsurface Radius"].default_value = SKIN_RADII
     shader["Subsurface Scale"].default_value = SKIN_SCALE_M

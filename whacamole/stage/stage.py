@@ -104,10 +104,10 @@ class SetBuilder:
     def plain(
         self, name: str, color: Vector, *, roughness: float = 0.6, metallic: float = 0.0, glow: float = 0.0
     ) -> Material:
-        """Return a material of one sRGB colour, shining with ``glow`` times that colour."""
+        """Return a material of one sRGB colour, lit by ``glow`` times that colour; lamps do the rest."""
         return Material(
             name=name, base_color=color, roughness=roughness, metallic=metallic,
-            emission=color, emission_strength=glow,
+            emission=color, emission_strength=glow, emission_lights=False,
         )  # fmt: skip
 
     def tinted(self, painted: Material, name: str, color: Vector, roughness: float | None = None) -> Material:

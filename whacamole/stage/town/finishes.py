@@ -108,4 +108,6 @@ class TownFinishes:
 
 
 def _glowing(material: Material, name: str, color: Vector, glow: float) -> Material:
-    return material.model_copy(update={"name": name, "emission": color, "emission_strength": glow})
+    return material.model_copy(
+        update={"name": name, "emission": color, "emission_strength": glow, "emission_lights": False}
+    )
