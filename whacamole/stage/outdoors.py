@@ -5,36 +5,56 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from render_jobs import Environment, Lamp
+from render_jobs import Environment, Lamp, Material
 from whacamole.stage.floor import Floor
 from whacamole.stage.horizon import horizon
+from whacamole.stage.pile import Pile
 from whacamole.stage.props import (
     MARKET,
     ROOF,
     STREET,
+    YARD,
     Finishes,
+    fountain,
     furnish,
-    paint_finishes,
+    lantern_parts,
+    paint_outdoors,
+    stair_house,
 )
+from whacamole.stage.props.plants import plant_finishes
+from whacamole.stage.shapes import boxes, cylinder, joined, moved
 from whacamole.stage.stage import SetBuilder, Stage
 from whacamole.stage.surroundings import daylight, ground
-from whacamole.stage.textures import TEXTURES
 from whacamole.stage.town import Town, line_with_houses, square_around
 
 __all__ = ["courtyard", "market", "night_street", "plaza", "rooftop"]
 
 Paths = NDArray[np.float64]
 
+REPEATS = {"asphalt": 3.0, "clinker": 3.6, "concrete": 4.0, "gravel": 2.2, "setts": 3.6, "slabs": 4.8}
+"""After how many metres a ground repeats, so that its stones have their true size."""
+
+STREET_TEXTURES = ("planks", "stone", "brick", "posters")
+YARD_TEXTURES = ("planks", "stone", "brick")
+"""What the things of a street and of a yard are painted with."""
+
+MANHOLE = 0.32
+"""Radius of a manhole's cover [m]."""
+
+PARAPET = (0.4, 1.1)
+"""Thickness and height of a roof's parapet [m]."""
+
 
 def plaza(rng: np.random.Generator, paths: Paths, folder: Path | None) -> Stage:
     """A town square by day: paved, house fronts, street furniture."""
     build, floor = SetBuilder(folder), Floor(paths)
-    texture = str(rng.choice(["paving", "paving", "asphalt", "concrete", "brick"]))
-    ground(build, floor, texture, float(rng.uniform(2.4, 3.6)), rng)
+    _pave(build, floor, ("slabs", "slabs", "setts", "clinker", "asphalt"), rng)
     sun, sky = daylight(rng, (22.0, 62.0))
     square = square_around(floor, _some_sides(rng, 0.8), rng, sun, 15.0)
     line_with_houses(build, square, Town(), rng, streets=True)
-    furnish(build, floor, STREET, int(rng.integers(9, 16)), _masonry(build, rng), rng)
+    finishes = plant_finishes(build, rng) | paint_outdoors(build, STREET_TEXTURES, rng)
+    furnish(build, floor, (fountain,), int(rng.random() < 0.6), finishes, rng, beyond=8.0)
+    furnish(build, floor, STREET, int(rng.integers(11, 17)), finishes, rng, beyond=8.0)
     horizon(build, floor, "town", rng)
     return build.stage("plaza", (sun,), sky, exposure=0.6)
 
@@ -42,15 +62,12 @@ def plaza(rng: np.random.Generator, paths: Paths, folder: Path | None) -> Stage:
 def market(rng: np.random.Generator, paths: Paths, folder: Path | None) -> Stage:
     """A lane of stalls between houses in the low light of morning or evening."""
     build, floor = SetBuilder(folder), Floor(paths)
-    ground(build, floor, str(rng.choice(["brick", "paving", "concrete"])), float(rng.uniform(2.0, 3.0)), rng)
+    _pave(build, floor, ("setts", "setts", "slabs", "clinker"), rng)
     sun, sky = daylight(rng, (12.0, 28.0))
     square = square_around(floor, _some_sides(rng, 0.9), rng, sun, 11.0)
     line_with_houses(build, square, Town(storeys=(2, 3), shops=0.7), rng, streets=True)
-    surfaces = {
-        "cloth": (("cloth", 1.0), ("cloth", 0.7), ("cloth", 1.3)), "wood": (("wood", 1.0), ("wood", 0.7)),
-        "stone": (("concrete", 1.4),),
-    }  # fmt: skip
-    furnish(build, floor, MARKET, int(rng.integers(14, 22)), paint_finishes(build, surfaces, rng), rng)
+    finishes = paint_outdoors(build, ("planks", "cloth", "awning-0", "awning-1"), rng)
+    furnish(build, floor, MARKET, int(rng.integers(12, 17)), finishes, rng, beyond=8.0)
     horizon(build, floor, "town", rng)
     return build.stage("market", (sun,), sky, exposure=0.9)
 
@@ -58,10 +75,11 @@ def market(rng: np.random.Generator, paths: Paths, folder: Path | None) -> Stage
 def courtyard(rng: np.random.Generator, paths: Paths, folder: Path | None) -> Stage:
     """A yard closed in by houses, lit by an overcast sky: soft light, no hard shadow."""
     build, floor = SetBuilder(folder), Floor(paths)
-    ground(build, floor, str(rng.choice(["paving", "concrete", "brick"])), float(rng.uniform(2.0, 3.5)), rng)
+    _pave(build, floor, ("slabs", "setts", "clinker"), rng)
     square = square_around(floor, np.ones(4, bool), rng, None, 15.0)
     line_with_houses(build, square, Town(shops=0.1), rng, streets=False)
-    furnish(build, floor, STREET, int(rng.integers(7, 13)), _masonry(build, rng), rng)
+    finishes = plant_finishes(build, rng) | paint_outdoors(build, YARD_TEXTURES, rng)
+    furnish(build, floor, YARD, int(rng.integers(10, 16)), finishes, rng, beyond=8.0)
     light = Environment(
         kind="hdri",
         hdri=str(rng.choice(["courtyard", "city", "forest"])),  # type: ignore[arg-type]
@@ -76,16 +94,14 @@ def courtyard(rng: np.random.Generator, paths: Paths, folder: Path | None) -> St
 def rooftop(rng: np.random.Generator, paths: Paths, folder: Path | None) -> Stage:
     """A flat roof at sunrise or sunset: parapets, vents, the light of an HDRI from low down."""
     build, floor = SetBuilder(folder), Floor(paths)
-    texture, metres = str(rng.choice(["concrete", "asphalt", "wood"])), float(rng.uniform(2.5, 4.0))
+    texture = str(rng.choice(["concrete", "asphalt", "gravel", "slabs"]))
     beyond = float(rng.uniform(12.0, 15.0))
-    ground(build, floor, texture, metres, rng, beyond + 0.2)
-    surfaces = {"stone": (("concrete", 1.4), ("plaster", 2.0), ("brick", 1.4)), "wood": (("wood", 1.0),)}
-    furnish(build, floor, ROOF, int(rng.integers(10, 16)), paint_finishes(build, surfaces, rng), rng)
-    parapet = build.material("parapet", TEXTURES["brick"], rng, metres=1.6)
-    reach = floor.reach + beyond
-    for index, (x, y) in enumerate(((1, 0), (0, 1), (-1, 0), (0, -1))):
-        size = (0.4, 2.0 * reach, 1.1) if x else (2.0 * reach, 0.4, 1.1)
-        build.add_box(f"parapet-{index}", (x * reach, y * reach, 0.0), size, parapet)
+    ground(build, floor, texture, REPEATS[texture], rng, beyond + 0.2)
+    finishes = paint_outdoors(build, ("planks", "stone", "brick", "render"), rng)
+    furnish(build, floor, (stair_house,), 1, finishes, rng)
+    furnish(build, floor, ROOF, int(rng.integers(12, 18)), finishes, rng)
+    wall = finishes[str(rng.choice(["brick", "render"]))][0]
+    _parapet(build, floor.reach + beyond, wall, finishes["stone"][0])
     light = Environment(
         kind="hdri",
         hdri=str(rng.choice(["sunrise", "sunset"])),  # type: ignore[arg-type]
@@ -99,21 +115,27 @@ def rooftop(rng: np.random.Generator, paths: Paths, folder: Path | None) -> Stag
 def night_street(rng: np.random.Generator, paths: Paths, folder: Path | None) -> Stage:
     """A street at night under lamps: warm pools of light, dark fronts."""
     build, floor = SetBuilder(folder), Floor(paths)
-    ground(build, floor, str(rng.choice(["asphalt", "paving"])), float(rng.uniform(2.4, 3.4)), rng)
+    _pave(build, floor, ("asphalt", "asphalt", "slabs", "setts"), rng)
     square = square_around(floor, _some_sides(rng, 0.8), rng, None, 15.0)
     line_with_houses(build, square, Town(shops=0.6, lit=0.35), rng, streets=True, glow=0.8)
-    furnish(build, floor, STREET, int(rng.integers(8, 14)), _masonry(build, rng), rng)
+    finishes = plant_finishes(build, rng) | paint_outdoors(build, STREET_TEXTURES, rng, glow=2.5)
+    furnish(build, floor, STREET[:-2], int(rng.integers(8, 14)), finishes, rng, beyond=8.0)
     warm = (1.0, float(rng.uniform(0.84, 0.93)), float(rng.uniform(0.66, 0.8)))
     night = Environment(kind="color", color=(0.10, 0.13, 0.22), strength=0.6)
     horizon(build, floor, "night-town", rng)
-    return build.stage("night-street", _street_lamps(build, floor, warm, rng), night, exposure=0.3)
+    lamps = _street_lamps(build, floor, finishes, warm, rng)
+    return build.stage("night-street", lamps, night, exposure=0.3)
 
 
 def _street_lamps(
-    build: SetBuilder, floor: Floor, color: tuple[float, float, float], rng: np.random.Generator
+    build: SetBuilder,
+    floor: Floor,
+    finishes: Finishes,
+    color: tuple[float, float, float],
+    rng: np.random.Generator,
 ) -> tuple[Lamp, ...]:
-    """Stand lamp posts around the paths so that no part of them is dark."""
-    post = build.material("post", TEXTURES["concrete"], rng, metres=2.0)
+    """Stand lanterns around the paths so that no part of them is dark."""
+    lanterns = Pile()
     low, high = floor.low - 3.8, floor.high + 3.8
     columns, rows = np.maximum(np.ceil((high - low) / 9.0), 1).astype(int) + 1
     lamps: list[Lamp] = []
@@ -122,7 +144,12 @@ def _street_lamps(
             if np.hypot(*(floor.paths - [x, y]).T).min() < 3.4:
                 continue
             index, height = len(lamps), float(rng.uniform(4.2, 5.2))
-            build.add_cylinder(f"post-{index}", (float(x), float(y), 0.0), 0.07, height, post)
+            base = (float(x), float(y), 0.0)
+            post, *head = lantern_parts(height)
+            build.add(f"post-{index}.metal", moved(post.solid, base), finishes["metal"][0])
+            build.keep_out(f"post-{index}", base, (0.26, 0.26, height), 0.0)
+            for part in head:
+                lanterns.add(part.finish, moved(part.solid, base))
             nearest = floor.paths[int(np.argmin(np.hypot(*(floor.paths - [x, y]).T)))]
             lamp = Lamp(
                 position=(float(x), float(y), height + 0.15),
@@ -132,12 +159,36 @@ def _street_lamps(
                 color=color,
             )
             lamps.append(lamp)
+    for finish, solid in lanterns.merged():
+        build.add(f"lanterns.{finish}", solid, finishes[finish][0])
     return tuple(lamps)
 
 
-def _masonry(build: SetBuilder, rng: np.random.Generator) -> Finishes:
-    stone = (("concrete", 1.5), ("brick", 1.6), ("plaster", 2.0))
-    return paint_finishes(build, {"stone": stone, "wood": (("wood", 1.2), ("wood", 0.8))}, rng)
+def _pave(build: SetBuilder, floor: Floor, kinds: tuple[str, ...], rng: np.random.Generator) -> None:
+    """Lay a ground of one of the kinds, with covers of manholes where nobody treads."""
+    kind = str(rng.choice(kinds))
+    ground(build, floor, kind, REPEATS[kind], rng)
+    covers = []
+    for _ in range(int(rng.integers(2, 6))):
+        place = floor.spot(rng, MANHOLE, 5.0, 1.0)
+        if place is not None:
+            covers.append(cylinder((*place, 0.0), MANHOLE, 0.005))
+    if covers:
+        build.add("manholes", joined(covers), build.plain("manhole", (0.17, 0.17, 0.18), metallic=0.5))
+
+
+def _parapet(build: SetBuilder, reach: float, wall: Material, coping: Material) -> None:
+    """Wall in a roof that reaches so far from its middle [m]; slabs of stone lie on the wall."""
+    for index, (x, y) in enumerate(((1, 0), (0, 1), (-1, 0), (0, -1))):
+        half = np.array([PARAPET[0] / 2, reach] if x else [reach, PARAPET[0] / 2])
+        middle = np.array([x * reach, y * reach])
+        top = PARAPET[1]
+        low, high = middle - half + 0.04, middle + half - 0.04
+        build.add(f"parapet-{index}.wall", boxes([*low, 0.0], [*high, top - 0.07]), wall)
+        low, high = middle - half, middle + half
+        build.add(f"parapet-{index}.coping", boxes([*low, top - 0.07], [*high, top]), coping)
+        base, size = (float(middle[0]), float(middle[1]), 0.0), (float(2 * half[0]), float(2 * half[1]), top)
+        build.keep_out(f"parapet-{index}", base, size, 0.0)
 
 
 def _some_sides(rng: np.random.Generator, share: float) -> NDArray[np.bool_]:

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from render_jobs import Material
-from whacamole.stage.shapes import Solid, Vector, box, cylinder
+from whacamole.stage.shapes import Solid, Vector, box, cylinder, moved
 from whacamole.stage.stage import SetBuilder
 from whacamole.stage.textures import TEXTURES
 
-__all__ = ["Finishes", "Part", "Prop", "PropMaker", "block", "drawn", "drum", "paint_finishes"]
+__all__ = ["Finishes", "Part", "Prop", "PropMaker", "block", "drawn", "drum", "fitted", "paint_finishes"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,6 +67,16 @@ def paint_finishes(
 def drawn(rng: np.random.Generator, *spans: tuple[float, float]) -> tuple[float, ...]:
     """Draw a number from each range."""
     return tuple(float(rng.uniform(*span)) for span in spans)
+
+
+def fitted(name: str, parts: Sequence[Part]) -> Prop:
+    """Return parts that stand on z = 0 as a prop, moved so that its box is about the middle."""
+    solid = np.concatenate([part.solid.vertices for part in parts])
+    low, high = solid.min(axis=0), solid.max(axis=0)
+    middle = (low + high) / 2.0
+    offset = (-float(middle[0]), -float(middle[1]), 0.0)
+    size = (float(high[0] - low[0]), float(high[1] - low[1]), float(high[2]))
+    return Prop(name, size, tuple(Part(moved(part.solid, offset), part.finish) for part in parts))
 
 
 def block(

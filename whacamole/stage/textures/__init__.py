@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 from whacamole.stage.textures.floors import boards, carpet, floor_tiles, herringbone, poured
 from whacamole.stage.textures.foliage import bark
-from whacamole.stage.textures.grounds import asphalt, concrete, grass, gravel, paving
+from whacamole.stage.textures.grounds import asphalt, clinker, concrete, grass, gravel, paving, setts, slabs
 from whacamole.stage.textures.interiors import (
     art,
     blockwork,
@@ -37,6 +37,7 @@ TEXTURES: dict[str, Callable[..., Image]] = {
     "brickwork": brickwork,
     "cardboard": cardboard,
     "carpet": carpet,
+    "clinker": clinker,
     "cloth": cloth,
     "concrete": concrete,
     "floor-tiles": floor_tiles,
@@ -50,6 +51,8 @@ TEXTURES: dict[str, Callable[..., Image]] = {
     "poured": poured,
     "roof-tiles": roof_tiles,
     "rug": rug,
+    "setts": setts,
+    "slabs": slabs,
     "stucco": stucco,
     "timber": timber,
     "wallpaper": wallpaper,

@@ -4,7 +4,7 @@ import numpy as np
 
 from whacamole.stage.textures.painting import Image, cells, clipped, masonry, noise, strew, tinted, tones
 
-__all__ = ["asphalt", "concrete", "grass", "gravel", "paving"]
+__all__ = ["asphalt", "clinker", "concrete", "grass", "gravel", "paving", "setts", "slabs"]
 
 AUTUMN = ((0.55, 0.42, 0.18), (0.42, 0.24, 0.10), (0.62, 0.54, 0.30), (0.30, 0.22, 0.12))
 
@@ -21,6 +21,44 @@ def paving(rng: np.random.Generator, size: int = 512) -> Image:
         color=(base[0], base[1], base[2]), joint=(0.33, 0.32, 0.30),
         stagger=float(rng.choice([0.0, 0.5])), spread=0.09, joint_width=1.5,
     )  # fmt: skip
+
+
+def slabs(rng: np.random.Generator, size: int = 768) -> Image:
+    """Stone slabs of 40 × 40 or 60 × 40 cm where they repeat every 4.8 m, worn and stained."""
+    base = np.array([0.57, 0.54, 0.50]) * rng.uniform(0.8, 1.1) + rng.normal(0.0, 0.015, 3)
+    image = masonry(
+        rng, size, 12, int(rng.choice([8, 12])), color=(base[0], base[1], base[2]), joint=(0.34, 0.33, 0.31),
+        stagger=float(rng.choice([0.0, 0.5])), spread=0.07, joint_width=1.2,
+    )  # fmt: skip
+    return _stained(rng, image)
+
+
+def setts(rng: np.random.Generator, size: int = 768) -> Image:
+    """Stones of 10 × 10 cm where they repeat every 3.6 m."""
+    base = np.array([0.47, 0.46, 0.45]) * rng.uniform(0.85, 1.15) + rng.normal(0.0, 0.015, 3)
+    image = masonry(
+        rng, size, 36, 36, color=(base[0], base[1], base[2]), joint=(0.27, 0.26, 0.24),
+        stagger=0.5, spread=0.13, joint_width=1.6,
+    )  # fmt: skip
+    return _stained(rng, image)
+
+
+def clinker(rng: np.random.Generator, size: int = 768) -> Image:
+    """Paving bricks of 20 × 10 cm where they repeat every 3.6 m."""
+    base = np.array([0.47, 0.33, 0.27]) * rng.uniform(0.85, 1.15) + rng.normal(0.0, 0.015, 3)
+    image = masonry(
+        rng, size, 36, 18, color=(base[0], base[1], base[2]), joint=(0.36, 0.33, 0.29),
+        stagger=0.5, spread=0.11, joint_width=0.9,
+    )  # fmt: skip
+    return _stained(rng, image)
+
+
+def _stained(rng: np.random.Generator, image: Image) -> Image:
+    """Darken a ground in patches, and spot it as chewing gum and oil do."""
+    size = len(image)
+    image = image * (1.0 + 0.06 * noise(rng, size, 1.5))[..., None]
+    strew(rng, image, 40, ((0.24, 0.23, 0.22), (0.62, 0.60, 0.57), (0.33, 0.31, 0.29)), (1.5, 4.5), 0.85)
+    return clipped(image)
 
 
 def asphalt(rng: np.random.Generator, size: int = 512) -> Image:

@@ -78,6 +78,7 @@ class TownFinishes:
             "trim-sand": tinted(stucco, "trim-sand", (0.86, 0.79, 0.67)),
             "trim-grey": tinted(stucco, "trim-grey", (0.66, 0.65, 0.63)),
             "stone": tinted(stucco, "stone", (0.60, 0.59, 0.57)),
+            "slabs": tinted(self._walls["ashlar"], "slabs", (0.74, 0.73, 0.71)),
             "frame-white": build.plain("frame-white", (0.86, 0.86, 0.84), roughness=0.4),
             "frame-dark": build.plain("frame-dark", (0.18, 0.19, 0.20), roughness=0.4),
             "frame-wood": build.plain("frame-wood", (0.38, 0.25, 0.16), roughness=0.5),

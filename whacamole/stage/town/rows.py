@@ -27,6 +27,12 @@ HOUSE_WIDTH = (7.0, 13.0)
 STREET = (5.0, 8.0)
 """Width of a street between houses [m]."""
 
+CORNER = 11.0
+"""How far rows along y reach past the corners [m]: as deep as the deepest house."""
+
+PAVEMENT, PAVEMENT_HEIGHT, KERB = 2.6, 0.12, 0.15
+"""Width and height of the pavement before the fronts, width of its kerb [m]."""
+
 OUTWARD = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
 """Direction of each side: +x, +y, −x, −y."""
 
@@ -80,18 +86,27 @@ def line_with_houses(
         axis = side % 2
         size = square.high - square.low
         # Rows along y reach past the corners, rows along x fit in between.
-        length = float(size[1 - axis]) + (22.0 if axis == 0 else 0.0)
+        length = float(size[1 - axis]) + (2.0 * CORNER if axis == 0 else 0.0)
         place = (square.low + square.high) / 2.0 + OUTWARD[side] * size / 2.0
-        _row(
-            build,
-            f"house-{side}",
-            place,
-            float(FACING[side]),
-            _widths(length, rng, streets),
-            town,
-            finishes,
-            rng,
-        )
+        houses = _widths(length, rng, streets)
+        _row(build, f"house-{side}", place, float(FACING[side]), houses, town, finishes, rng)
+    for finish, solid in _pavement(square).merged():
+        build.add(f"pavement.{finish}", solid, finishes[finish])
+
+
+def _pavement(square: Square) -> Pile:
+    """A raised strip of slabs along the fronts on all sides, with its kerb."""
+    laid, size = Pile(), square.high - square.low
+    for side in range(4):
+        axis, strip = side % 2, Pile()
+        half = float(size[1 - axis]) / 2.0 - (0.0 if axis == 0 else PAVEMENT)
+        strip.add_boxes("slabs", (-half, KERB - PAVEMENT, 0.0), (half, 0.0, PAVEMENT_HEIGHT))
+        x = np.arange(-half, half - 1.0, 1.0)
+        low = np.column_stack([x, 0 * x - PAVEMENT, 0 * x])
+        strip.add_boxes("stone", low, low + np.array([0.985, KERB, PAVEMENT_HEIGHT + 0.005]))
+        place = (square.low + square.high) / 2.0 + OUTWARD[side] * size / 2.0
+        laid.add_all(strip, (float(place[0]), float(place[1]), 0.0), float(FACING[side]))
+    return laid
 
 
 def _widths(length: float, rng: np.random.Generator, street: bool) -> list[tuple[float, float]]:
