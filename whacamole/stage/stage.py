@@ -57,11 +57,8 @@ class SetBuilder:
         *,
         metres: float,
         roughness: float = 0.85,
-        cut: bool = False,
     ) -> Material:
         """Paint a texture that repeats every ``metres`` and return the material that shows it.
-
-        With ``cut`` the texture has a fourth channel, alpha, that cuts the surface out.
 
         One number is drawn from ``rng`` whether or not anything is painted, so that a stage which is only
         planned on is the stage that will be filmed.
@@ -72,11 +69,8 @@ class SetBuilder:
         self.folder.mkdir(parents=True, exist_ok=True)
         path = self.folder / f"{name}.png"
         pixels = np.round(texture(np.random.default_rng(grain)) * 255.0).astype(np.uint8)
-        Image.fromarray(pixels, "RGBA" if cut else "RGB").save(path, compress_level=1)
-        return Material(
-            name=name, base_color_texture=path, roughness=roughness, uv_scale=1.0 / metres,
-            alpha_mode="clip" if cut else "opaque",
-        )  # fmt: skip
+        Image.fromarray(pixels, "RGB").save(path, compress_level=1)
+        return Material(name=name, base_color_texture=path, roughness=roughness, uv_scale=1.0 / metres)
 
     def add(
         self,

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from whacamole.stage.shapes import Solid
 from whacamole.stage.stage import SetBuilder
-from whacamole.stage.textures.distance import distant_land, tree_row
+from whacamole.stage.textures.distance import distant_land, distant_woods
 
 __all__ = ["hills", "tree_line"]
 
@@ -18,6 +18,12 @@ TREE_ROWS = ((88.0, (6.0, 10.0)), (112.0, (9.0, 15.0)))
 
 ROW_LENGTH = 42.0
 """About as much of a row of trees one picture shows [m]."""
+
+OUTLINE = 0.45
+"""Step of the outline of a row of trees [m]."""
+
+CROWN = (3.5, 9.0)
+"""Width of a distant crown [m]."""
 
 CREST = (9.0, 30.0)
 """Height of hills [m]."""
@@ -30,26 +36,37 @@ AROUND = 96
 
 
 def tree_line(build: SetBuilder, center: Floats, reach: float, rng: np.random.Generator) -> None:
-    """Plant two rows of trees around a place, the rear ones higher and hazier."""
-    angle = np.arange(AROUND + 1) * (2.0 * np.pi / AROUND)
+    """Plant two rows of trees around a place, the rear ones higher and hazier.
+
+    Solid up to a ragged outline: a picture cut out by its alpha would cost a path tracer much more.
+    """
     for index, (beyond, (lowest, highest)) in enumerate(TREE_ROWS):
+        columns = int(2.0 * np.pi * (reach + beyond) / OUTLINE)
+        angle = np.arange(columns + 1) * (2.0 * np.pi / columns)
         radius = reach + beyond + 4.0 * _waves(angle, 5, rng)
-        height = np.clip(
-            (lowest + highest) / 2.0 + (highest - lowest) / 3.0 * _waves(angle, 9, rng), lowest, highest
-        )
-        foot = np.column_stack(
-            [center + radius[:, None] * np.stack([np.cos(angle), np.sin(angle)], 1), 0.0 * angle]
-        )
+        height = _outline(columns, lowest, highest, rng)
+        level = [center + radius[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)]
+        foot = np.column_stack([*level, np.zeros(columns + 1)])
         pictures = max(1, round(2.0 * np.pi * (reach + beyond) / ROW_LENGTH))
-        along = np.linspace(0.0, pictures, AROUND + 1)
+        along = np.linspace(0.0, pictures, columns + 1)
         rows = np.stack([foot, foot + np.array([0.0, 0.0, 1.0]) * height[:, None]])
-        # Not up to the picture's rims, where it would repeat.
-        uv = np.stack([np.stack([along, np.full_like(along, v)], 1) for v in (0.01, 0.98)])
-        trees = build.material(
-            f"far-trees-{index}", partial(tree_row, haze=0.12 + 0.15 * index), rng,
-            metres=1.0, roughness=1.0, cut=True,
-        )  # fmt: skip
-        build.add(f"far-trees-{index}", _sheet(rows, uv), trees, smooth=True)
+        up = 0.02 + 0.96 * np.stack([0.0 * height, height / highest])
+        uv = np.stack([np.broadcast_to(along, up.shape), up], axis=-1)
+        paint = partial(distant_woods, haze=0.12 + 0.15 * index)
+        woods = build.material(f"far-trees-{index}", paint, rng, metres=1.0, roughness=1.0)
+        build.add(f"far-trees-{index}", _sheet(rows, uv), woods, smooth=True)
+
+
+def _outline(columns: int, lowest: float, highest: float, rng: np.random.Generator) -> Floats:
+    """Return the height (columns + 1,) of rounded crowns above undergrowth, ragged by their twigs [m]."""
+    count = int(columns * OUTLINE / CROWN[1])
+    middle, half = rng.uniform(0.0, columns, count), rng.uniform(*CROWN, count) / 2.0 / OUTLINE
+    top = rng.uniform(lowest, highest, count)
+    away = np.abs((np.arange(columns)[:, None] - middle + columns / 2.0) % columns - columns / 2.0) / half
+    crowns = top * (0.45 + 0.5 * np.sqrt(np.clip(1.0 - away**2, 0.0, 1.0))) * (away < 1.0)
+    height = np.maximum(crowns.max(axis=1), 0.4 * lowest) + rng.normal(0.0, 0.25, columns)
+    height = np.clip(height, 0.35 * lowest, highest)
+    return np.append(height, height[0])
 
 
 def hills(build: SetBuilder, center: Floats, foot: float, rng: np.random.Generator) -> None:
