@@ -34,9 +34,11 @@ Paths = NDArray[np.float64]
 REPEATS = {"asphalt": 3.0, "clinker": 3.6, "concrete": 4.0, "gravel": 2.2, "setts": 3.6, "slabs": 4.8}
 """After how many metres a ground repeats, so that its stones have their true size."""
 
-STREET_TEXTURES = ("planks", "stone", "brick", "posters")
-YARD_TEXTURES = ("planks", "stone", "brick")
-"""What the things of a street and of a yard are painted with."""
+STREET_TEXTURES = ("planks", "stone", "brick")
+"""What the things of a street or a yard are painted with."""
+
+YARD_SKIES = {"courtyard": 2.4, "city": 1.0, "forest": 1.4}
+"""Strength of the skies over a yard: only what comes from high up gets into it."""
 
 MANHOLE = 0.32
 """Radius of a manhole's cover [m]."""
@@ -52,7 +54,7 @@ def plaza(rng: np.random.Generator, paths: Paths, folder: Path | None) -> Stage:
     sun, sky = daylight(rng, (22.0, 62.0))
     square = square_around(floor, _some_sides(rng, 0.8), rng, sun, 15.0)
     line_with_houses(build, square, Town(), rng, streets=True)
-    finishes = plant_finishes(build, rng) | paint_outdoors(build, STREET_TEXTURES, rng)
+    finishes = plant_finishes(build, rng) | paint_outdoors(build, STREET_TEXTURES, rng, posted=True)
     furnish(build, floor, (fountain,), int(rng.random() < 0.6), finishes, rng, beyond=8.0)
     furnish(build, floor, STREET, int(rng.integers(11, 17)), finishes, rng, beyond=8.0)
     horizon(build, floor, "town", rng)
@@ -66,7 +68,7 @@ def market(rng: np.random.Generator, paths: Paths, folder: Path | None) -> Stage
     sun, sky = daylight(rng, (12.0, 28.0))
     square = square_around(floor, _some_sides(rng, 0.9), rng, sun, 11.0)
     line_with_houses(build, square, Town(storeys=(2, 3), shops=0.7), rng, streets=True)
-    finishes = paint_outdoors(build, ("planks", "cloth", "awning-0", "awning-1"), rng)
+    finishes = paint_outdoors(build, ("planks", "awning-0", "awning-1"), rng)
     furnish(build, floor, MARKET, int(rng.integers(12, 17)), finishes, rng, beyond=8.0)
     horizon(build, floor, "town", rng)
     return build.stage("market", (sun,), sky, exposure=0.9)
@@ -77,14 +79,15 @@ def courtyard(rng: np.random.Generator, paths: Paths, folder: Path | None) -> St
     build, floor = SetBuilder(folder), Floor(paths)
     _pave(build, floor, ("slabs", "setts", "clinker"), rng)
     square = square_around(floor, np.ones(4, bool), rng, None, 15.0)
-    line_with_houses(build, square, Town(shops=0.1), rng, streets=False)
-    finishes = plant_finishes(build, rng) | paint_outdoors(build, YARD_TEXTURES, rng)
+    line_with_houses(build, square, Town(storeys=(2, 3), shops=0.1), rng, streets=False)
+    finishes = plant_finishes(build, rng) | paint_outdoors(build, STREET_TEXTURES, rng)
     furnish(build, floor, YARD, int(rng.integers(10, 16)), finishes, rng, beyond=8.0)
+    sky = str(rng.choice(list(YARD_SKIES)))
     light = Environment(
         kind="hdri",
-        hdri=str(rng.choice(["courtyard", "city", "forest"])),  # type: ignore[arg-type]
+        hdri=sky,  # type: ignore[arg-type]
         rotation=float(rng.uniform(0.0, 360.0)),
-        strength=1.0,
+        strength=YARD_SKIES[sky],
         backdrop=(0.72, 0.76, 0.82),
     )
     horizon(build, floor, "town", rng)
@@ -118,7 +121,7 @@ def night_street(rng: np.random.Generator, paths: Paths, folder: Path | None) ->
     _pave(build, floor, ("asphalt", "asphalt", "slabs", "setts"), rng)
     square = square_around(floor, _some_sides(rng, 0.8), rng, None, 15.0)
     line_with_houses(build, square, Town(shops=0.6, lit=0.35), rng, streets=True, glow=0.8)
-    finishes = plant_finishes(build, rng) | paint_outdoors(build, STREET_TEXTURES, rng, glow=2.5)
+    finishes = plant_finishes(build, rng) | paint_outdoors(build, STREET_TEXTURES, rng, posted=True, glow=2.5)
     furnish(build, floor, STREET[:-2], int(rng.integers(8, 14)), finishes, rng, beyond=8.0)
     warm = (1.0, float(rng.uniform(0.84, 0.93)), float(rng.uniform(0.66, 0.8)))
     night = Environment(kind="color", color=(0.10, 0.13, 0.22), strength=0.6)

@@ -37,7 +37,7 @@ def test_a_prop_stands_on_the_floor_and_fills_its_box(name: str) -> None:
 
 def test_every_finish_of_a_prop_can_be_painted() -> None:
     build, rng = SetBuilder(None), np.random.default_rng(0)
-    finishes = plant_finishes(build, rng) | paint_outdoors(build, tuple(PAINTED), rng)
+    finishes = plant_finishes(build, rng) | paint_outdoors(build, tuple(PAINTED), rng, posted=True)
     for maker in MAKERS.values():
         for seed in range(12):
             assert {part.finish for part in maker(np.random.default_rng(seed)).parts} <= set(finishes)

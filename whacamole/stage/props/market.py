@@ -32,14 +32,13 @@ def _stall(rng: np.random.Generator) -> Prop:
         Part(skirt, cloth),
         Part(_canopy(width, depth, eaves), cloth),
     ]
-    boxes_along = np.arange(-x + 0.33, x - 0.2, 0.5)
-    for index, place in enumerate(boxes_along):
-        fruit = FRUITS[int(rng.integers(len(FRUITS)))]
+    kinds = rng.permutation(FRUITS)[:2].tolist()
+    along = np.arange(-x + 0.33, x - 0.2, 0.5)
+    for place in along[:5]:
+        fruit = kinds[int(rng.integers(2))]
         for row in (-0.28, 0.12):
             at = (float(place), row, TABLE)
             parts += [Part(moved(_tray(), at), "planks"), Part(moved(_heap(rng), at), fruit)]
-        if index >= 4:
-            break
     return fitted("stall", parts)
 
 
@@ -73,7 +72,7 @@ def _heap(rng: np.random.Generator) -> Solid:
             (0.72 * radius, 1.6 * radius),
             (0.2 * radius, 1.95 * radius),
         ],
-        7,
+        6,
     )
     found = []
     for layer, inset in enumerate((0.06, 0.11)):
@@ -157,7 +156,7 @@ def _parasol(rng: np.random.Generator) -> Prop:
                 for a, b in ((0.11, 0.11), (-0.11, 0.11), (0.11, -0.11), (-0.11, -0.11))
             ),
         ]
-    cloth = str(rng.choice(["cloth", "awning-0"]))
+    cloth = str(rng.choice(["awning-0", "awning-1"]))
     return fitted(
         "parasol", [Part(pole, "steel"), Part(shade, cloth), Part(joined([table, *stools]), "planks")]
     )
@@ -166,10 +165,10 @@ def _parasol(rng: np.random.Generator) -> Prop:
 def _baskets(rng: np.random.Generator) -> Prop:
     """Two or three baskets, heaped."""
     parts = []
+    fruit = FRUITS[int(rng.integers(len(FRUITS)))]
     for index in range(int(rng.integers(2, 4))):
         at = (0.55 * index, float(rng.uniform(-0.08, 0.08)), 0.0)
         basket = lathe([(0.2, 0.0), (0.25, 0.25), (0.27, 0.28), (0.24, 0.28), (0.22, 0.2)], 16)
-        fruit = FRUITS[int(rng.integers(len(FRUITS)))]
         parts += [Part(moved(basket, at), "wicker"), Part(moved(_heap(rng), (at[0], at[1], 0.18)), fruit)]
     return fitted("baskets", parts)
 

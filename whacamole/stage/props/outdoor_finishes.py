@@ -8,6 +8,7 @@ from whacamole.stage.props.prop import Finishes
 from whacamole.stage.shapes import Vector
 from whacamole.stage.stage import SetBuilder
 from whacamole.stage.textures import TEXTURES
+from whacamole.stage.textures.windows import posters
 
 __all__ = ["paint_outdoors"]
 
@@ -44,20 +45,23 @@ PAINTS: Final[tuple[Vector, ...]] = (
 PAINTED: Final[dict[str, tuple[tuple[str, float], ...]]] = {
     "planks": (("wood", 0.7),),
     "stone": (("concrete", 1.5),),
-    "cloth": (("cloth", 1.0),),
-    "awning-0": (("cloth", 1.4),),
-    "awning-1": (("cloth", 2.0),),
+    "awning-0": (("awning", 1.4),),
+    "awning-1": (("awning", 2.0),),
     "brick": (("brickwork", 4.0),),
     "render": (("stucco", 4.0),),
-    "posters": (("cloth", 2.4),),
 }
 """Texture, and metres after which it repeats, of what has one."""
 
 
 def paint_outdoors(
-    build: SetBuilder, textures: tuple[str, ...], rng: np.random.Generator, glow: float = 0.0
+    build: SetBuilder,
+    textures: tuple[str, ...],
+    rng: np.random.Generator,
+    *,
+    posted: bool = False,
+    glow: float = 0.0,
 ) -> Finishes:
-    """Paint the named ``textures`` and make all plain finishes; lamps shine with ``glow``."""
+    """Paint the named ``textures``, posters if ``posted``; make plain finishes and lamps of ``glow``."""
     finishes: Finishes = {
         name: tuple(
             build.material(f"{name}-{index}", TEXTURES[kind], rng, metres=metres)
@@ -65,6 +69,8 @@ def paint_outdoors(
         )
         for name in textures
     }
+    if posted:
+        finishes["posters"] = (build.material("posters", posters, rng, metres=2.6),)
     for name, (color, roughness, metallic) in PLAIN.items():
         finishes[name] = (build.plain(name, color, roughness=roughness, metallic=metallic),)
     finishes["paint"] = (build.plain("paint", PAINTS[int(rng.integers(len(PAINTS)))], roughness=0.4),)

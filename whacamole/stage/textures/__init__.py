@@ -22,7 +22,7 @@ from whacamole.stage.textures.interiors import (
 )
 from whacamole.stage.textures.painting import Image
 from whacamole.stage.textures.walls import ashlar, brick, brickwork, plaster, roof_tiles, stucco
-from whacamole.stage.textures.wood_and_cloth import cloth, wood
+from whacamole.stage.textures.wood_and_cloth import awning, cloth, wood
 
 __all__ = ["TEXTURES"]
 
@@ -30,6 +30,7 @@ TEXTURES: dict[str, Callable[..., Image]] = {
     "art": art,
     "ashlar": ashlar,
     "asphalt": asphalt,
+    "awning": awning,
     "bark": bark,
     "blockwork": blockwork,
     "boards": boards,

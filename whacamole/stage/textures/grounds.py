@@ -23,7 +23,7 @@ def paving(rng: np.random.Generator, size: int = 512) -> Image:
     )  # fmt: skip
 
 
-def slabs(rng: np.random.Generator, size: int = 768) -> Image:
+def slabs(rng: np.random.Generator, size: int = 576) -> Image:
     """Stone slabs of 40 × 40 or 60 × 40 cm where they repeat every 4.8 m, worn and stained."""
     base = np.array([0.57, 0.54, 0.50]) * rng.uniform(0.8, 1.1) + rng.normal(0.0, 0.015, 3)
     image = masonry(
@@ -33,7 +33,7 @@ def slabs(rng: np.random.Generator, size: int = 768) -> Image:
     return _stained(rng, image)
 
 
-def setts(rng: np.random.Generator, size: int = 768) -> Image:
+def setts(rng: np.random.Generator, size: int = 576) -> Image:
     """Stones of 10 × 10 cm where they repeat every 3.6 m."""
     base = np.array([0.47, 0.46, 0.45]) * rng.uniform(0.85, 1.15) + rng.normal(0.0, 0.015, 3)
     image = masonry(
@@ -43,7 +43,7 @@ def setts(rng: np.random.Generator, size: int = 768) -> Image:
     return _stained(rng, image)
 
 
-def clinker(rng: np.random.Generator, size: int = 768) -> Image:
+def clinker(rng: np.random.Generator, size: int = 576) -> Image:
     """Paving bricks of 20 × 10 cm where they repeat every 3.6 m."""
     base = np.array([0.47, 0.33, 0.27]) * rng.uniform(0.85, 1.15) + rng.normal(0.0, 0.015, 3)
     image = masonry(

@@ -1,12 +1,14 @@
 """Pictures of what windows show and of what hangs over shops; each picture is a sheet of several."""
 
+from itertools import pairwise
+
 import numpy as np
 from PIL import Image as Pictures
 from PIL import ImageDraw, ImageFont
 
 from whacamole.stage.textures.painting import Image, clipped, noise
 
-__all__ = ["PANES", "SHOPS", "SIGNS", "shop_windows", "sign_boards", "window_panes"]
+__all__ = ["PANES", "SHOPS", "SIGNS", "posters", "shop_windows", "sign_boards", "window_panes"]
 
 PANES = 4
 """Rows and columns of window panes on their sheet."""
@@ -114,3 +116,29 @@ def sign_boards(rng: np.random.Generator, size: int = 512) -> Image:
         font = ImageFont.load_default(height * rng.uniform(0.5, 0.66))
         draw.text((size / 2, top + height / 2), TRADES[trades[row]], fill=letters, font=font, anchor="mm")
     return np.asarray(sheet, dtype=np.float64) / 255.0
+
+
+def posters(rng: np.random.Generator, size: int = 512) -> Image:
+    """Bills pasted edge to edge in three rows: grounds of many colours, a figure, a line of large letters."""
+    sheet = Pictures.new("RGB", (size, size))
+    draw, height = ImageDraw.Draw(sheet), size // 3
+    for row in range(3):
+        edges = np.concatenate([[0], np.sort(rng.integers(0, size, 3)), [size]])
+        for left, right in pairwise(edges.tolist()):
+            box = (left, row * height, right, (row + 1) * height)
+            ground, ink = (tuple(int(v) for v in rng.integers(low, low + 120, 3)) for low in (110, 20))
+            draw.rectangle(box, fill=ground, outline=(225, 222, 214), width=4)
+            _bill(draw, box, ink, str(rng.choice(TRADES)))
+    return np.asarray(sheet, dtype=np.float64) / 255.0
+
+
+def _bill(draw: ImageDraw.ImageDraw, box: tuple[int, int, int, int], ink: tuple[int, ...], line: str) -> None:
+    left, top, right, bottom = box
+    width = right - left
+    if width < 40:
+        return
+    half = min(width, bottom - top) * 0.26
+    x, y = (left + right) / 2, top + 0.6 * (bottom - top)
+    draw.ellipse((x - half, y - half, x + half, y + half), fill=ink)
+    font = ImageFont.load_default(min(30.0, 1.5 * width / len(line)))
+    draw.text((x, top + 0.17 * (bottom - top)), line, fill=ink, font=font, anchor="mm")

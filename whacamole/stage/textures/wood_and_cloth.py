@@ -4,7 +4,7 @@ import numpy as np
 
 from whacamole.stage.textures.painting import Image, clipped, dye, noise
 
-__all__ = ["cloth", "wood"]
+__all__ = ["awning", "cloth", "wood"]
 
 BOARDS = 3
 
@@ -38,3 +38,25 @@ def cloth(rng: np.random.Generator, size: int = 512) -> Image:
     weave = 1.0 + 0.06 * np.sign(np.sin(x * size * np.pi / 2) * np.sin(y * size * np.pi / 2))
     color = mix[..., None] * first + (1.0 - mix[..., None]) * second
     return clipped(color * (weave * (1.0 + 0.05 * noise(rng, size, 1.2)))[..., None])
+
+
+CANVAS = (
+    (0.62, 0.16, 0.14),
+    (0.16, 0.36, 0.25),
+    (0.18, 0.29, 0.46),
+    (0.76, 0.58, 0.26),
+    (0.45, 0.44, 0.42),
+    (0.70, 0.38, 0.22),
+)
+"""Colours of market cloth."""
+
+
+def awning(rng: np.random.Generator, size: int = 256) -> Image:
+    """Canvas of one colour, or with pale stripes along y, faded in patches."""
+    _, x = np.mgrid[0:size, 0:size] / size
+    color, pale = np.array(CANVAS[rng.integers(len(CANVAS))]), np.array([0.88, 0.85, 0.78])
+    stripes = (np.floor(x * 8) % 2)[..., None] * float(rng.random() < 0.7)
+    image = (1.0 - stripes) * color + stripes * pale
+    return clipped(
+        image * (1.0 + 0.06 * noise(rng, size, 1.3) + 0.03 * noise(rng, size, 0.3, 30.0))[..., None]
+    )

@@ -69,7 +69,7 @@ class TownFinishes:
         pane = painted("panes", window_panes, 1.0, 0.06)
         shop = painted("shops", shop_windows, 1.0, 0.08)
         sign = painted("signs", sign_boards, 1.0, 0.4)
-        awning = painted("awnings", TEXTURES["cloth"], float(rng.uniform(1.2, 2.4)))
+        awning = painted("awnings", TEXTURES["awning"], float(rng.uniform(1.2, 2.4)))
         paints = [PAINTS[index] for index in rng.permutation(len(PAINTS))[: len(DOORS)]]
         roofs = [ROOFS[index] for index in rng.permutation(len(ROOFS))[: len(SLOPES)]]
         self._rest = {
