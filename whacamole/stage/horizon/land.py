@@ -22,7 +22,7 @@ ROW_LENGTH = 42.0
 OUTLINE = 0.45
 """Step of the outline of a row of trees [m]."""
 
-CROWN = (3.5, 9.0)
+CROWN = (6.0, 14.0)
 """Width of a distant crown [m]."""
 
 CREST = (9.0, 30.0)
@@ -59,12 +59,13 @@ def tree_line(build: SetBuilder, center: Floats, reach: float, rng: np.random.Ge
 
 def _outline(columns: int, lowest: float, highest: float, rng: np.random.Generator) -> Floats:
     """Return the height (columns + 1,) of rounded crowns above undergrowth, ragged by their twigs [m]."""
-    count = int(columns * OUTLINE / CROWN[1])
+    count = int(2.0 * columns * OUTLINE / CROWN[0])
     middle, half = rng.uniform(0.0, columns, count), rng.uniform(*CROWN, count) / 2.0 / OUTLINE
     top = rng.uniform(lowest, highest, count)
     away = np.abs((np.arange(columns)[:, None] - middle + columns / 2.0) % columns - columns / 2.0) / half
-    crowns = top * (0.45 + 0.5 * np.sqrt(np.clip(1.0 - away**2, 0.0, 1.0))) * (away < 1.0)
-    height = np.maximum(crowns.max(axis=1), 0.4 * lowest) + rng.normal(0.0, 0.25, columns)
+    crowns = top * np.clip(1.0 - away**2, 0.0, 1.0) ** 0.35
+    boughs = np.convolve(rng.normal(0.0, 0.9, columns + 3), np.full(4, 0.25), "valid")
+    height = np.maximum(crowns.max(axis=1), 0.5 * lowest) + boughs + rng.normal(0.0, 0.3, columns)
     height = np.clip(height, 0.35 * lowest, highest)
     return np.append(height, height[0])
 
