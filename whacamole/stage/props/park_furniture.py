@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from whacamole.stage.props.plants import fitted
-from whacamole.stage.props.prop import Prop
+from whacamole.stage.props.prop import Part, Prop, fitted
 from whacamole.stage.shapes import Solid, box, joined, lathe, moved, tilted
 
 __all__ = ["bench", "bin_", "fence", "lamp_post"]
@@ -28,7 +27,7 @@ def bench(rng: np.random.Generator) -> Prop:
     back = [box((0.0, 0.24, SEAT + 0.1 + 0.13 * index), (width, 0.028, 0.09)) for index in range(SLATS[1])]
     wood = joined([*slats, *(_reclined(slat) for slat in back)])
     frames = joined([moved(_frame(), (side * (width / 2 - 0.16), 0.0, 0.0)) for side in (-1.0, 1.0)])
-    return fitted("bench", [(wood, "planks"), (frames, "iron")])
+    return fitted("bench", [Part(*piece) for piece in [(wood, "planks"), (frames, "iron")]])
 
 
 def _reclined(solid: Solid) -> Solid:
@@ -53,7 +52,10 @@ def bin_(rng: np.random.Generator) -> Prop:
     lid = lathe([(radius + 0.02, height), (radius + 0.02, height + 0.03), (0.4 * radius, height + 0.09)], 18)
     if rng.random() < 0.5:
         barrel = lathe([(0.85 * radius, 0.03), (radius, height - 0.12), (0.93 * radius, height - 0.1)], 18)
-        return fitted("bin", [(barrel, "iron"), (_feet(radius, height), "iron"), (lid, "iron")])
+        return fitted(
+            "bin",
+            [Part(*piece) for piece in [(barrel, "iron"), (_feet(radius, height), "iron"), (lid, "iron")]],
+        )
     angles = np.arange(14) * (2.0 * np.pi / 14)
     x, y = radius * np.cos(angles), radius * np.sin(angles)
     slats = [
@@ -62,7 +64,16 @@ def bin_(rng: np.random.Generator) -> Prop:
     ]
     inside = lathe([(0.9 * radius, 0.05), (0.9 * radius, height - 0.16)], 14)
     return fitted(
-        "bin", [(joined(slats), "planks"), (inside, "iron"), (_feet(radius, height), "iron"), (lid, "iron")]
+        "bin",
+        [
+            Part(*piece)
+            for piece in [
+                (joined(slats), "planks"),
+                (inside, "iron"),
+                (_feet(radius, height), "iron"),
+                (lid, "iron"),
+            ]
+        ],
     )
 
 
@@ -92,7 +103,9 @@ def lamp_post(rng: np.random.Generator) -> Prop:
     cap = lathe(
         [(0.19, height + 0.38), (0.19, height + 0.4), (0.06, height + 0.52), (0.02, height + 0.6)], 12
     )
-    return fitted("lamp-post", [(post, "iron"), (glass, "lantern"), (cap, "iron")])
+    return fitted(
+        "lamp-post", [Part(*piece) for piece in [(post, "iron"), (glass, "lantern"), (cap, "iron")]]
+    )
 
 
 def fence(rng: np.random.Generator) -> Prop:
@@ -102,10 +115,10 @@ def fence(rng: np.random.Generator) -> Prop:
     posts = [box((float(x), 0.0, 0.0), (0.1, 0.1, 1.05)) for x in spots]
     if rng.random() < 0.5:
         rails = [box((0.0, 0.0, z), (length, 0.035, 0.11)) for z in (0.2, 0.5, 0.8)]
-        return fitted("fence", [(joined([*posts, *rails]), "planks")])
+        return fitted("fence", [Part(*piece) for piece in [(joined([*posts, *rails]), "planks")]])
     rails = [box((0.0, 0.0, z), (length, 0.035, 0.07)) for z in (0.22, 0.72)]
     pickets = [
         box((float(x), -0.03, 0.06), (0.07, 0.022, 0.86))
         for x in np.arange(-length / 2 + 0.06, length / 2 - 0.05, 0.14)
     ]
-    return fitted("fence", [(joined([*posts, *rails, *pickets]), "planks")])
+    return fitted("fence", [Part(*piece) for piece in [(joined([*posts, *rails, *pickets]), "planks")]])

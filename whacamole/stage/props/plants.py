@@ -6,12 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from whacamole.stage.props.growth import blades, leafy, limb, on_box, scattered
-from whacamole.stage.props.prop import Finishes, Part, Prop
+from whacamole.stage.props.prop import Finishes, Part, Prop, fitted
 from whacamole.stage.shapes import Solid, bevelled_box, box, lathe, moved
 from whacamole.stage.stage import SetBuilder
 from whacamole.stage.textures.foliage import blossom_tones, leaf_tones
 
-__all__ = ["bush", "fitted", "flower_bed", "hedge", "plant_finishes", "potted", "shrub_in"]
+__all__ = ["bush", "flower_bed", "hedge", "plant_finishes", "potted", "shrub_in"]
 
 UP = np.array([0.0, 0.0, 1.0])
 
@@ -49,20 +49,6 @@ def plant_finishes(build: SetBuilder, rng: np.random.Generator, season: str = "s
     }
 
 
-def fitted(name: str, parts: list[tuple[Solid, str]]) -> Prop:
-    """Return solids as a prop whose box fits them, its middle and its underside at the origin."""
-    corners = np.concatenate([solid.vertices for solid, _ in parts]).astype(np.float64)
-    low, high = corners.min(axis=0), corners.max(axis=0)
-    middle = (low + high) / 2.0
-    offset = (-float(middle[0]), -float(middle[1]), -float(low[2]))
-    size = high - low
-    return Prop(
-        name,
-        (float(size[0]), float(size[1]), float(size[2])),
-        tuple(Part(moved(solid, offset), finish) for solid, finish in parts),
-    )
-
-
 def potted(rng: np.random.Generator) -> Prop:
     """A plant in a pot: bushy, a small tree, or a sheaf of long leaves; 0.5 to 1.6 m high."""
     radius, height = float(rng.uniform(0.13, 0.2)), float(rng.uniform(0.24, 0.38))
@@ -78,7 +64,7 @@ def potted(rng: np.random.Generator) -> Prop:
         growth = _small_tree(rng, top)
     else:
         growth = [(_sheaf(rng, top, int(rng.integers(18, 34)), float(rng.uniform(0.5, 0.9))), "leaf")]
-    return fitted("potted-plant", [(pot, "pot"), (soil, "earth"), *growth])
+    return fitted("potted-plant", [Part(*piece) for piece in [(pot, "pot"), (soil, "earth"), *growth]])
 
 
 def shrub_in(
@@ -123,7 +109,7 @@ def bush(rng: np.random.Generator) -> Prop:
         spots, up = scattered(middle, 1.04 * size, 12, rng)
         spots[:, 2] = np.maximum(spots[:, 2], 0.06)
         parts.append((leafy(spots, up, (0.08, 0.08), rng), "blossom"))
-    return fitted("bush", parts)
+    return fitted("bush", [Part(*piece) for piece in parts])
 
 
 def hedge(rng: np.random.Generator) -> Prop:
@@ -134,7 +120,10 @@ def hedge(rng: np.random.Generator) -> Prop:
     places, outward = on_box(size, LEAVES_A_SQUARE_METRE, rng)
     places += rng.normal(0.0, 0.025, places.shape)
     places[:, 2] = np.maximum(places[:, 2], 0.06)
-    return fitted("hedge", [(core, "core"), (leafy(places, outward, (0.12, 0.065), rng), "leaf")])
+    return fitted(
+        "hedge",
+        [Part(*piece) for piece in [(core, "core"), (leafy(places, outward, (0.12, 0.065), rng), "leaf")]],
+    )
 
 
 def flower_bed(rng: np.random.Generator) -> Prop:
@@ -156,7 +145,7 @@ def flower_bed(rng: np.random.Generator) -> Prop:
     upward = rng.normal(0.0, 0.4, heads.shape) + UP
     blossom = leafy(heads, upward, (0.075, 0.075), rng)
     parts = [(earth, "earth"), *((side, "stone") for side in sides), (foliage, "leaf"), (blossom, "blossom")]
-    return fitted("flower-bed", parts)
+    return fitted("flower-bed", [Part(*piece) for piece in parts])
 
 
 def _clumps(spot: NDArray[np.float64], rng: np.random.Generator) -> Solid:

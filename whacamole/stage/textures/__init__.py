@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 from whacamole.stage.textures.floors import boards, carpet, floor_tiles, herringbone, poured
 from whacamole.stage.textures.foliage import bark
-from whacamole.stage.textures.grounds import asphalt, clinker, concrete, grass, gravel, paving, setts, slabs
+from whacamole.stage.textures.grounds import asphalt, clinker, concrete, grass, gravel, setts, slabs
 from whacamole.stage.textures.interiors import (
     art,
     blockwork,
@@ -22,7 +22,7 @@ from whacamole.stage.textures.interiors import (
 )
 from whacamole.stage.textures.painting import Image
 from whacamole.stage.textures.walls import ashlar, brick, brickwork, plaster, roof_tiles, stucco
-from whacamole.stage.textures.wood_and_cloth import awning, cloth, wood
+from whacamole.stage.textures.wood_and_cloth import awning, wood
 
 __all__ = ["TEXTURES"]
 
@@ -39,7 +39,6 @@ TEXTURES: dict[str, Callable[..., Image]] = {
     "cardboard": cardboard,
     "carpet": carpet,
     "clinker": clinker,
-    "cloth": cloth,
     "concrete": concrete,
     "floor-tiles": floor_tiles,
     "grass": grass,
@@ -47,7 +46,6 @@ TEXTURES: dict[str, Callable[..., Image]] = {
     "herringbone": herringbone,
     "paint": paint,
     "palette": palette,
-    "paving": paving,
     "plaster": plaster,
     "poured": poured,
     "roof-tiles": roof_tiles,

@@ -4,23 +4,12 @@ import numpy as np
 
 from whacamole.stage.textures.painting import Image, cells, clipped, masonry, noise, strew, tinted, tones
 
-__all__ = ["asphalt", "clinker", "concrete", "grass", "gravel", "paving", "setts", "slabs"]
+__all__ = ["asphalt", "clinker", "concrete", "grass", "gravel", "setts", "slabs"]
 
 AUTUMN = ((0.55, 0.42, 0.18), (0.42, 0.24, 0.10), (0.62, 0.54, 0.30), (0.30, 0.22, 0.12))
 
 
 DAISIES = ((0.88, 0.87, 0.80), (0.90, 0.82, 0.30), (0.85, 0.80, 0.86))
-
-
-def paving(rng: np.random.Generator, size: int = 512) -> Image:
-    """Square or staggered slabs."""
-    rows = int(rng.integers(4, 9))
-    base = np.array([0.56, 0.53, 0.49]) * rng.uniform(0.75, 1.15) + rng.normal(0.0, 0.02, 3)
-    return masonry(
-        rng, size, rows - rows % 2, rows - rows % 2,
-        color=(base[0], base[1], base[2]), joint=(0.33, 0.32, 0.30),
-        stagger=float(rng.choice([0.0, 0.5])), spread=0.09, joint_width=1.5,
-    )  # fmt: skip
 
 
 def slabs(rng: np.random.Generator, size: int = 576) -> Image:

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Image", "cells", "clipped", "dye", "masonry", "noise", "strew", "tinted", "tones"]
+__all__ = ["Image", "cells", "clipped", "masonry", "noise", "strew", "tinted", "tones"]
 
 Image = NDArray[np.float64]
 
@@ -101,9 +101,3 @@ def strew(
 def tones(color: Image, factors: Iterable[float]) -> tuple[tuple[float, float, float], ...]:
     """Return lighter and darker kinds of an sRGB colour (3,)."""
     return tuple((float(f * color[0]), float(f * color[1]), float(f * color[2])) for f in factors)
-
-
-def dye(rng: np.random.Generator) -> Image:
-    """Return an sRGB colour (3,), neither grey nor glaring."""
-    hue = rng.uniform(0.0, 2.0 * np.pi) + np.array([0.0, 2.1, 4.2])
-    return np.asarray(rng.uniform(0.3, 0.65) * (1.0 + 0.45 * np.cos(hue)))

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from whacamole.stage.textures.painting import Image, clipped, dye, noise
+from whacamole.stage.textures.painting import Image, clipped, noise
 
-__all__ = ["awning", "cloth", "wood"]
+__all__ = ["awning", "wood"]
 
 BOARDS = 3
 
@@ -25,19 +25,6 @@ def wood(rng: np.random.Generator, size: int = 512) -> Image:
     joint = np.minimum(along % 1.0, 1.0 - along % 1.0) * size / BOARDS
     edge = np.clip(np.minimum(gap, joint) / 2.0, 0.0, 1.0)
     return clipped(base * (tone * (0.4 + 0.6 * edge))[..., None])
-
-
-def cloth(rng: np.random.Generator, size: int = 512) -> Image:
-    """Woven stripes or checks."""
-    y, x = np.mgrid[0:size, 0:size] / size
-    first, second = dye(rng), dye(rng)
-    bands = int(rng.integers(3, 9))
-    mix = (np.floor(x * bands * 2) % 2) * 0.7
-    if rng.random() < 0.5:
-        mix = 0.5 * mix + 0.5 * (np.floor(y * bands * 2) % 2)
-    weave = 1.0 + 0.06 * np.sign(np.sin(x * size * np.pi / 2) * np.sin(y * size * np.pi / 2))
-    color = mix[..., None] * first + (1.0 - mix[..., None]) * second
-    return clipped(color * (weave * (1.0 + 0.05 * noise(rng, size, 1.2)))[..., None])
 
 
 CANVAS = (
