@@ -53,6 +53,7 @@ def make(order: SequenceOrder, say: Say, **_: Any) -> None:
                 shutil.copy(image, work / "beside")
                 (work / "beside").rename(frames / image.name)
                 say("frame", index=number)
+        _meet_full_disk()  # of frames none may be left to draw, and labels take room too
         say("step", name="label", frames=len(images))
         _label(order, template, sequence)
         frames.rename(sequence.folder / "rgb")
@@ -86,10 +87,14 @@ def _facts(order: SequenceOrder, template: SequenceLayout) -> dict[str, Any]:
     return {**facts, "id": order.sequence_id, **motion}
 
 
-def _meet_fault(sequence_id: str, frame: int) -> None:
+def _meet_full_disk() -> None:
     if (home() / "faults" / "disk-full").exists():
         (home() / "met-disk-full").touch()
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+
+def _meet_fault(sequence_id: str, frame: int) -> None:
+    _meet_full_disk()
     if frame != FAULTY_FRAME:
         return
     for file in (home() / "faults").glob(f"{sequence_id}.*"):

@@ -66,6 +66,12 @@ class Home:
         log = self.folder / "made.log"
         return Counter(log.read_text(encoding="utf-8").split() if log.exists() else [])
 
+    def note_moved(self, out: Path) -> None:
+        """Write down what a killed run had moved into the dataset and not yet written down."""
+        moved = {folder.name for folder in (out / "sequences").iterdir()} - set(self.made())
+        with (self.folder / "made.log").open("a", encoding="utf-8") as log:
+            log.writelines(f"{name}\n" for name in sorted(moved))
+
     def plant(self, names: list[str]) -> dict[str, str]:
         """Order a fault of each kind, for sequences spread over the run; return which got which."""
         kinds = [*ENDS, "abort", "kill"]
@@ -161,6 +167,7 @@ def test_on_one_machine(home: Home, undisturbed: dict[str, bytes], tmp_path: Pat
     first.kill()  # the parent, as the kernel or a batch system would; its children must go with it
     first.communicate()
     wait_for(lambda: not orphans(out), "a child outlived its parent")
+    home.note_moved(out)
     before = len(home.made())
     assert before < SEQUENCES
     (home.faults / "disk-full").touch()
