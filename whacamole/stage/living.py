@@ -29,7 +29,7 @@ from whacamole.stage.rooms import (
 )
 from whacamole.stage.rooms.fitting import Piece, door_in, hang_pictures, row_of_windows, stand_against
 from whacamole.stage.shapes import Vector, box
-from whacamole.stage.stage import SetBuilder, Stage
+from whacamole.stage.stage import SetBuilder, Stage, one_of
 from whacamole.stage.textures import TEXTURES
 from whacamole.stage.textures.floors import BOARDS_METRES, HERRINGBONE_METRES
 
@@ -115,10 +115,6 @@ def living_room(rng: np.random.Generator, paths: NDArray[np.float64], folder: Pa
     return build.stage("living-room", tuple(lamps), Environment(color=(0.5, 0.5, 0.5), strength=0.15))
 
 
-def _one(rng: np.random.Generator, colors: tuple[Vector, ...]) -> Vector:
-    return colors[int(rng.integers(len(colors)))]
-
-
 def _paint(
     build: SetBuilder, by_day: bool, rng: np.random.Generator
 ) -> tuple[Material, list[Material], dict[str, Material], Finishes]:
@@ -129,14 +125,14 @@ def _paint(
     )
     cover = "wallpaper" if rng.random() < 0.3 else "paint"
     covered = build.material("walls", TEXTURES[cover], rng, metres=1.2 if cover == "wallpaper" else 2.4)
-    plain = _one(rng, PAINTS)
+    plain = one_of(rng, PAINTS)
     colors = [plain] * 4
     if rng.random() < 0.5:
-        colors[int(rng.integers(4))] = _one(rng, ACCENTS)
+        colors[int(rng.integers(4))] = one_of(rng, ACCENTS)
     walls = [build.tinted(covered, f"wall-{index}", color) for index, color in enumerate(colors)]
     timber = build.material("timber", TEXTURES["timber"], rng, metres=0.8, roughness=0.5)
     weave = build.material("weave", TEXTURES["weave"], rng, metres=0.35, roughness=0.95)
-    wood, other, white = _one(rng, WOODS), _one(rng, WOODS), float(rng.uniform(0.82, 0.92))
+    wood, other, white = one_of(rng, WOODS), one_of(rng, WOODS), float(rng.uniform(0.82, 0.92))
     frame = build.plain("frame", (white, white, 0.97 * white), roughness=0.45)
     dark = build.plain("dark", (0.13, 0.13, 0.14), roughness=0.45)
     metal = build.plain("metal", (0.62, 0.61, 0.59), roughness=0.35, metallic=1.0)
@@ -154,14 +150,14 @@ def _paint(
         "lit": lit,
         "art": art,
         "housing": build.plain("housing", (0.82, 0.82, 0.80), roughness=0.5),
-        "curtain": build.tinted(weave, "curtain", _one(rng, (*CUSHIONS, *FABRICS[:2], *PAINTS[:3]))),
+        "curtain": build.tinted(weave, "curtain", one_of(rng, (*CUSHIONS, *FABRICS[:2], *PAINTS[:3]))),
         "picture-frame": dark if rng.random() < 0.5 else build.tinted(timber, "picture-frame", other),
         "mat": build.plain("mat", (0.93, 0.92, 0.89), roughness=0.8),
         "rug": build.material("rug", TEXTURES["rug"], rng, metres=1.0, roughness=0.95),
         "ceiling": build.plain("ceiling", (0.92, 0.92, 0.90), roughness=0.9),
     }
-    fabrics = [build.tinted(weave, f"fabric-{k}", _one(rng, FABRICS)) for k in range(2)]
-    accents = [build.tinted(weave, f"accent-{k}", _one(rng, CUSHIONS)) for k in range(2)]
+    fabrics = [build.tinted(weave, f"fabric-{k}", one_of(rng, FABRICS)) for k in range(2)]
+    accents = [build.tinted(weave, f"accent-{k}", one_of(rng, CUSHIONS)) for k in range(2)]
     seat = accents[0] if rng.random() < 0.4 else build.tinted(timber, "seat", wood)
     finishes: Finishes = {
         "wood": (build.tinted(timber, "wood-0", wood), build.tinted(timber, "wood-1", other)),

@@ -25,7 +25,7 @@ from whacamole.stage.rooms import (
 from whacamole.stage.rooms.fitting import Piece, door_in, row_of_windows, stand_against
 from whacamole.stage.rooms.lamps import FIXTURES
 from whacamole.stage.shapes import Vector
-from whacamole.stage.stage import SetBuilder, Stage
+from whacamole.stage.stage import SetBuilder, Stage, one_of
 from whacamole.stage.textures import TEXTURES
 from whacamole.stage.textures.floors import BOARDS_METRES
 
@@ -49,10 +49,6 @@ LINES: tuple[Vector, ...] = (
     (0.12, 0.12, 0.12),
 )
 MATS: tuple[Vector, ...] = ((0.16, 0.32, 0.58), (0.14, 0.42, 0.36), (0.62, 0.18, 0.16))
-
-
-def _one(rng: np.random.Generator, colors: tuple[Vector, ...]) -> Vector:
-    return colors[int(rng.integers(len(colors)))]
 
 
 def sports_hall(rng: np.random.Generator, paths: Paths, folder: Path | None) -> Stage:
@@ -131,26 +127,26 @@ def _hall_materials(
         ground = build.material("floor", TEXTURES["boards"], rng, metres=0.6 * BOARDS_METRES, roughness=0.35)
     else:
         ground = build.material("floor", TEXTURES["poured"], rng, metres=3.0, roughness=0.4)
-        ground = build.tinted(ground, "floor-tinted", _one(rng, SPORT_FLOORS))
+        ground = build.tinted(ground, "floor-tinted", one_of(rng, SPORT_FLOORS))
     cover = str(rng.choice(["blockwork", "blockwork", "paint", "brick"]))
     covered = build.material(
         "walls", TEXTURES[cover], rng, metres={"blockwork": 1.6, "paint": 2.4, "brick": 1.2}[cover]
     )
-    walls = [covered if cover == "brick" else build.tinted(covered, "wall", _one(rng, PALE))] * 4
+    walls = [covered if cover == "brick" else build.tinted(covered, "wall", one_of(rng, PALE))] * 4
     timber = build.material("timber", TEXTURES["timber"], rng, metres=0.9, roughness=0.5)
     wood = build.tinted(timber, "wood", (0.82, 0.64, 0.44))
     white = build.plain("white", (0.86, 0.86, 0.85), roughness=0.5)
     dark = build.plain("dark", (0.12, 0.12, 0.13), roughness=0.5)
     metal = build.plain("metal", (0.6, 0.6, 0.6), roughness=0.4, metallic=1.0)
     picks = rng.permutation(len(LINES))
-    door_color = _one(rng, ((0.30, 0.42, 0.52), (0.66, 0.24, 0.18), (0.70, 0.70, 0.68), (0.36, 0.46, 0.40)))
+    door_color = one_of(rng, ((0.30, 0.42, 0.52), (0.66, 0.24, 0.18), (0.70, 0.70, 0.68), (0.36, 0.46, 0.40)))
     trim = {
         "frame": white,
         "metal": metal,
         "picture-frame": dark,
         "mat": white,
         "leaf": build.plain("leaf", door_color, roughness=0.5),
-        "panel": build.tinted(timber, "panel", _one(rng, PANELS)),
+        "panel": build.tinted(timber, "panel", one_of(rng, PANELS)),
         "beam": build.tinted(timber, "beam", (0.86, 0.70, 0.50)) if rng.random() < 0.6 else white,
         "sky": build.plain("sky", (0.90, 0.95, 1.0), glow=1.5),
         "far": build.plain("far", (0.70, 0.78, 0.82), glow=0.9),
@@ -161,7 +157,7 @@ def _hall_materials(
         "line-0": build.plain("line-0", LINES[picks[0]], roughness=0.4),
         "line-1": build.plain("line-1", LINES[picks[1]], roughness=0.4),
     }
-    mat = _one(rng, MATS)
+    mat = one_of(rng, MATS)
     weave = build.material("weave", TEXTURES["weave"], rng, metres=0.3, roughness=0.6)
     finishes: Finishes = {
         "wood": (wood,),
@@ -169,7 +165,7 @@ def _hall_materials(
         "dark": (dark,),
         "metal": (metal,),
         "leather": (build.plain("leather", (0.50, 0.33, 0.20), roughness=0.45),),
-        "mat": (build.tinted(weave, "mat-0", mat), build.tinted(weave, "mat-1", _one(rng, MATS))),
+        "mat": (build.tinted(weave, "mat-0", mat), build.tinted(weave, "mat-1", one_of(rng, MATS))),
         "band": (build.plain("band", (0.75, 0.14, 0.12)),),
         "ball": (build.plain("ball", (0.80, 0.38, 0.14), roughness=0.7),),
     }

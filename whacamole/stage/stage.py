@@ -1,6 +1,6 @@
 """What a stage is: a place to film in, ready for a renderer and known to the camera planner."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -10,9 +10,9 @@ from PIL import Image
 
 from camera_rigs import Obstacle, World
 from render_jobs import Environment, Lamp, Material, Mesh, Sun
-from whacamole.stage.shapes import Solid, Vector, box, cylinder
+from whacamole.stage.shapes import Solid, Vector, box
 
-__all__ = ["SetBuilder", "Stage"]
+__all__ = ["SetBuilder", "Stage", "one_of"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,11 +109,6 @@ class SetBuilder:
         rough = painted.roughness if roughness is None else roughness
         return painted.model_copy(update={"name": name, "base_color": color, "roughness": rough})
 
-    def add_cylinder(self, name: str, base: Vector, radius: float, height: float, material: Material) -> None:
-        """Put an upright cylinder on the set; ``base`` is the middle of its underside."""
-        size = (2.0 * radius, 2.0 * radius, height)
-        self.add(name, cylinder(base, radius, height), material, _around(name, base, size, 0.0))
-
     def stage(
         self, name: str, lights: tuple[Sun | Lamp, ...], environment: Environment, exposure: float = 0.0
     ) -> Stage:
@@ -124,3 +119,8 @@ class SetBuilder:
 
 def _around(name: str, base: Vector, size: Vector, yaw: float) -> Obstacle:
     return Obstacle((base[0], base[1], base[2] + size[2] / 2.0), size, yaw, name)
+
+
+def one_of(rng: np.random.Generator, colors: Sequence[Vector]) -> Vector:
+    """Draw one of several colours, each as likely as the others."""
+    return colors[int(rng.integers(len(colors)))]

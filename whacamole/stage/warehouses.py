@@ -31,16 +31,12 @@ from whacamole.stage.rooms import (
 from whacamole.stage.rooms.fitting import Piece, door_in, row_of_windows, stand_against
 from whacamole.stage.rooms.lamps import FIXTURES
 from whacamole.stage.shapes import Vector
-from whacamole.stage.stage import SetBuilder, Stage
+from whacamole.stage.stage import SetBuilder, Stage, one_of
 from whacamole.stage.textures import TEXTURES
 
 __all__ = ["warehouse"]
 
 Paths = NDArray[np.float64]
-
-
-def _one(rng: np.random.Generator, colors: tuple[Vector, ...]) -> Vector:
-    return colors[int(rng.integers(len(colors)))]
 
 
 STEELS: tuple[Vector, ...] = ((0.20, 0.32, 0.50), (0.36, 0.40, 0.42), (0.22, 0.36, 0.30))
@@ -138,11 +134,11 @@ def _store_materials(
     covered = build.material(
         "walls", TEXTURES[cover], rng, metres={"blockwork": 1.6, "concrete": 2.6, "brick": 1.2}[cover]
     )
-    pale = _one(rng, ((0.84, 0.84, 0.82), (0.74, 0.76, 0.76), (0.80, 0.77, 0.70)))
+    pale = one_of(rng, ((0.84, 0.84, 0.82), (0.74, 0.76, 0.76), (0.80, 0.77, 0.70)))
     walls = [build.tinted(covered, "wall", pale) if cover == "blockwork" else covered] * 4
     planks = build.material("timber", TEXTURES["timber"], rng, metres=0.6, roughness=0.8)
     board = build.material("cardboard", TEXTURES["cardboard"], rng, metres=0.5, roughness=0.85)
-    steel = build.plain("steel", _one(rng, STEELS), roughness=0.45)
+    steel = build.plain("steel", one_of(rng, STEELS), roughness=0.45)
     dark, yellow = (
         build.plain("dark", (0.10, 0.10, 0.11), roughness=0.5),
         build.plain("yellow", (0.86, 0.68, 0.12)),
@@ -171,7 +167,7 @@ def _store_materials(
         "cardboard": (board, build.tinted(board, "cardboard-pale", (0.95, 0.93, 0.90))),
         "upright": (steel,),
         "steel": (steel,),
-        "beam": (build.plain("rack-beam", _one(rng, BEAMS), roughness=0.45),),
+        "beam": (build.plain("rack-beam", one_of(rng, BEAMS), roughness=0.45),),
         "drum": tuple(build.plain(f"drum-{k}", c, roughness=0.4) for k, c in enumerate(DRUMS)),
         "drum-other": (build.plain("drum-other", DRUMS[int(rng.integers(len(DRUMS)))], roughness=0.4),),
         "metal": (trim["metal"],),

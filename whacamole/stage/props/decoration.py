@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from whacamole.stage.props.pieces import in_cells, rod, standing
-from whacamole.stage.props.prop import Part, Prop, drawn
+from whacamole.stage.props.pieces import in_cells, rod
+from whacamole.stage.props.prop import Part, Prop, drawn, fitted
 from whacamole.stage.shapes import Solid, lathe
 from whacamole.stage.textures.interiors import CELLS
 
@@ -19,7 +19,7 @@ def floor_lamp(rng: np.random.Generator) -> Prop:
         Part(rod((0.0, 0.0, 0.02), (0.0, 0.0, height - 0.26), 0.012), "dark"),
         Part(shade, "shade"),
     ]
-    return standing("floor-lamp", parts)
+    return fitted("floor-lamp", parts)
 
 
 def plant(rng: np.random.Generator) -> Prop:
@@ -41,7 +41,7 @@ def plant(rng: np.random.Generator) -> Prop:
         parts.append(Part(rod((0.0, 0.0, top), (0.0, 0.0, top + stem), 0.018), "wood"))
         top += stem
     parts.append(Part(_leaves(rng, top - 0.02, tall, int(rng.integers(18, 34))), "leaves", smooth=True))
-    return standing("plant", parts)
+    return fitted("plant", parts)
 
 
 def _leaves(rng: np.random.Generator, base: float, length: float, count: int) -> Solid:

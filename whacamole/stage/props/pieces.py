@@ -5,23 +5,13 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from whacamole.stage.props.prop import Part, Prop
+from whacamole.stage.props.prop import Part
 from whacamole.stage.shapes import Solid, Vector, boxes, moved, tilted
 from whacamole.stage.textures.interiors import CELLS
 
-__all__ = ["box_part", "cushion", "in_cells", "legs", "rod", "standing"]
+__all__ = ["box_part", "cushion", "in_cells", "legs", "rod"]
 
 Floats = NDArray[np.float64]
-
-
-def standing(name: str, parts: list[Part]) -> Prop:
-    """Return parts as a prop: moved so that the box around all of them stands about the origin."""
-    vertices = np.concatenate([part.solid.vertices for part in parts]).astype(np.float64)
-    low, high = vertices.min(axis=0), vertices.max(axis=0)
-    shift = (*(-(low + high)[:2] / 2.0), -low[2])
-    w, d, h = high - low
-    placed = tuple(Part(moved(part.solid, shift), part.finish, part.smooth) for part in parts)
-    return Prop(name, (float(w), float(d), float(h)), placed)
 
 
 def box_part(finish: str, *corners: Sequence[float]) -> Part:

@@ -70,13 +70,13 @@ def drawn(rng: np.random.Generator, *spans: tuple[float, float]) -> tuple[float,
 
 
 def fitted(name: str, parts: Sequence[Part]) -> Prop:
-    """Return parts as a prop, moved so that the middle of the underside of their box is the origin."""
-    solid = np.concatenate([part.solid.vertices for part in parts])
-    low, high = solid.min(axis=0), solid.max(axis=0)
-    middle = (low + high) / 2.0
-    offset = (-float(middle[0]), -float(middle[1]), -float(low[2]))
-    size = (float(high[0] - low[0]), float(high[1] - low[1]), float(high[2] - low[2]))
-    return Prop(name, size, tuple(Part(moved(part.solid, offset), part.finish) for part in parts))
+    """Return parts as a prop: moved so that the box around all of them stands about the origin."""
+    vertices = np.concatenate([part.solid.vertices for part in parts]).astype(np.float64)
+    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    shift = (*(-(low + high)[:2] / 2.0), -low[2])
+    w, d, h = high - low
+    placed = tuple(Part(moved(part.solid, shift), part.finish, part.smooth) for part in parts)
+    return Prop(name, (float(w), float(d), float(h)), placed)
 
 
 def block(

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from whacamole.stage.props.pieces import box_part, cushion, legs, rod, standing
-from whacamole.stage.props.prop import Part, Prop, drawn
+from whacamole.stage.props.pieces import box_part, cushion, legs, rod
+from whacamole.stage.props.prop import Part, Prop, drawn, fitted
 from whacamole.stage.shapes import Solid, cylinder
 
 __all__ = ["armchair", "chair", "pouf", "sofa"]
@@ -60,7 +60,7 @@ def _upholstered(name: str, seats: int, seat: float, rng: np.random.Generator, p
             )
         )
     parts += [Part(leg, "wood") for leg in legs(width - 0.06, depth - 0.06, foot + 0.02, 0.022)]
-    return standing(name, parts)
+    return fitted(name, parts)
 
 
 def chair(rng: np.random.Generator) -> Prop:
@@ -91,14 +91,14 @@ def chair(rng: np.random.Generator) -> Prop:
                 smooth=True,
             )
         )
-    return standing("chair", parts)
+    return fitted("chair", parts)
 
 
 def pouf(rng: np.random.Generator) -> Prop:
     """A round upholstered stool without legs."""
     radius, height = drawn(rng, (0.22, 0.32), (0.36, 0.44))
     size = (2 * radius, 2 * radius, height - 0.03)
-    return standing(
+    return fitted(
         "pouf",
         [
             Part(cushion((0.0, 0.0, 0.03), size, radius * 0.9, 0.0), "accent", smooth=True),

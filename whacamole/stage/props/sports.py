@@ -4,8 +4,8 @@ import itertools
 
 import numpy as np
 
-from whacamole.stage.props.pieces import box_part, cushion, rod, standing
-from whacamole.stage.props.prop import Part, Prop
+from whacamole.stage.props.pieces import box_part, cushion, rod
+from whacamole.stage.props.prop import Part, Prop, fitted
 from whacamole.stage.shapes import Solid, Vector, bevelled_box, boxes, joined, lathe, moved, tilted
 
 __all__ = ["ball_cage", "goal", "gym_bench", "hoop", "mats", "vaulting_box", "wall_bars"]
@@ -26,7 +26,7 @@ def wall_bars(rng: np.random.Generator) -> Prop:
         rod((-x, -0.01, z), (x, -0.01, z), 0.018) for z in np.arange(0.12, height - 0.15, 0.15)
     ]
     bars.append(rod((-x, -0.05, height - 0.05), (x, -0.05, height - 0.05), 0.018))
-    return standing("wall-bars", [box_part("wood", *uprights), Part(joined(bars), "wood", smooth=True)])
+    return fitted("wall-bars", [box_part("wood", *uprights), Part(joined(bars), "wood", smooth=True)])
 
 
 def gym_bench(rng: np.random.Generator) -> Prop:
@@ -37,7 +37,7 @@ def gym_bench(rng: np.random.Generator) -> Prop:
     feet = [(s * x * 0.78 - 0.02, -0.17, 0.0, s * x * 0.78 + 0.02, 0.17, 0.05) for s in (-1, 0, 1)]
     posts = [(s * x * 0.78 - 0.018, -0.1, 0.05, s * x * 0.78 + 0.018, 0.1, 0.27) for s in (-1, 0, 1)]
     beam = (-x + 0.06, -0.03, 0.1, x - 0.06, 0.03, 0.19)
-    return standing("gym-bench", [Part(seat, "wood"), box_part("wood", *feet, *posts, beam)])
+    return fitted("gym-bench", [Part(seat, "wood"), box_part("wood", *feet, *posts, beam)])
 
 
 def vaulting_box(rng: np.random.Generator) -> Prop:
@@ -57,7 +57,7 @@ def vaulting_box(rng: np.random.Generator) -> Prop:
     parts.append(
         Part(cushion((0.0, 0.0, top), (wide + 0.04, deep + 0.04, 0.14), 0.06), "leather", smooth=True)
     )
-    return standing("vaulting-box", parts)
+    return fitted("vaulting-box", parts)
 
 
 def mats(rng: np.random.Generator) -> Prop:
@@ -65,7 +65,7 @@ def mats(rng: np.random.Generator) -> Prop:
     if rng.random() < 0.4:
         thick = float(rng.uniform(0.25, 0.4))
         slab = cushion((0.0, 0.0, 0.0), (3.0, 2.0, thick), 0.04)
-        return standing(
+        return fitted(
             "landing-mat",
             [Part(slab, "mat", smooth=True), box_part("dark", (-1.49, -1.005, 0.04, 1.49, 1.005, 0.09))],
         )
@@ -75,7 +75,7 @@ def mats(rng: np.random.Generator) -> Prop:
         cushion((float(dx), float(dy), 0.062 * k), (2.0, 1.0, 0.06), 0.012)
         for k, (dx, dy) in enumerate(shift)
     ]
-    return standing("mats", [Part(joined(slabs), "mat", smooth=True)])
+    return fitted("mats", [Part(joined(slabs), "mat", smooth=True)])
 
 
 def goal(rng: np.random.Generator) -> Prop:
@@ -112,7 +112,7 @@ def goal(rng: np.random.Generator) -> Prop:
         )
         for k in range(1, 14)
     ]
-    return standing("goal", [*parts, Part(joined(frame), "white"), Part(joined(cords), "white")])
+    return fitted("goal", [*parts, Part(joined(frame), "white"), Part(joined(cords), "white")])
 
 
 def ball_cage(rng: np.random.Generator) -> Prop:
@@ -149,7 +149,7 @@ def ball_cage(rng: np.random.Generator) -> Prop:
             for iz in range(2):
                 at = (-0.36 + 0.24 * ix, -0.13 + 0.26 * iy, low + 0.24 * iz)
                 parts.append(Part(_ball(at, 0.115), ("ball", "white")[int(rng.integers(2))], smooth=True))
-    return standing("ball-cage", parts)
+    return fitted("ball-cage", parts)
 
 
 def _ball(base: Vector, radius: float) -> Solid:
@@ -198,4 +198,4 @@ def hoop(rng: np.random.Generator) -> Prop:
         Part(joined(cords), "white"),
         Part(joined(arms), "dark"),
     ]
-    return standing("hoop", parts)
+    return fitted("hoop", parts)

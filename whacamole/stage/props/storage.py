@@ -4,8 +4,8 @@ import itertools
 
 import numpy as np
 
-from whacamole.stage.props.pieces import box_part, in_cells, legs, rod, standing
-from whacamole.stage.props.prop import Part, Prop, drawn
+from whacamole.stage.props.pieces import box_part, in_cells, legs, rod
+from whacamole.stage.props.prop import Part, Prop, drawn, fitted
 from whacamole.stage.props.tables import some_things, vase
 from whacamole.stage.shapes import Solid, boxes, moved
 from whacamole.stage.textures.interiors import CELLS
@@ -56,7 +56,7 @@ def bookcase(rng: np.random.Generator) -> Prop:
         left, right = -x + k * bay + BOARD + 0.005, -x + (k + 1) * bay - 0.005
         for z in levels[:-1]:
             parts += _on_shelf(rng, left, right, float(z) + BOARD, clear - 0.02, -y + 0.05)
-    return standing("bookcase", parts)
+    return fitted("bookcase", parts)
 
 
 def _on_shelf(
@@ -106,7 +106,7 @@ def sideboard(rng: np.random.Generator) -> Prop:
     parts += _fronts(finish, -x, x, foot + 0.01, height - 0.02, -y + 0.02, int(rng.integers(2, 5)))
     parts += [Part(leg, "wood") for leg in legs(width - 0.1, depth - 0.08, foot, 0.02)]
     parts += some_things(rng, width, depth, height, int(rng.integers(2, 5)))
-    return standing("sideboard", parts)
+    return fitted("sideboard", parts)
 
 
 def television(rng: np.random.Generator) -> Prop:
@@ -131,7 +131,7 @@ def television(rng: np.random.Generator) -> Prop:
     parts.append(
         box_part("screen", (-wide / 2 + 0.012, 0.014, z + 0.012, wide / 2 - 0.012, 0.02, z + tall - 0.012))
     )
-    return standing("television", parts)
+    return fitted("television", parts)
 
 
 def kitchen(rng: np.random.Generator) -> Prop:
@@ -172,4 +172,4 @@ def kitchen(rng: np.random.Generator) -> Prop:
         Part(moved(part.solid, (0.2, 0.1, 0.0)), part.finish, part.smooth)
         for part in some_things(rng, 2 * x - 0.9, 0.3, 0.905, 2)
     ]
-    return standing("kitchen", parts)
+    return fitted("kitchen", parts)

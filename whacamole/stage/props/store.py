@@ -4,8 +4,8 @@ import itertools
 
 import numpy as np
 
-from whacamole.stage.props.pieces import box_part, rod, standing
-from whacamole.stage.props.prop import Part, Prop, drawn
+from whacamole.stage.props.pieces import box_part, rod
+from whacamole.stage.props.prop import Part, Prop, drawn, fitted
 from whacamole.stage.shapes import Solid, bevelled_box, boxes, joined, lathe, moved, turned
 
 __all__ = ["barrels", "cartons", "column", "cone", "crates", "pallet_rack", "pallets", "trolley"]
@@ -45,7 +45,7 @@ def pallets(rng: np.random.Generator) -> Prop:
         )
         for k in range(count)
     ]
-    return standing("pallets", [Part(joined(stack), "timber")])
+    return fitted("pallets", [Part(joined(stack), "timber")])
 
 
 def _cartons(rng: np.random.Generator, width: float, depth: float, tallest: float) -> Solid:
@@ -72,7 +72,7 @@ def _cartons(rng: np.random.Generator, width: float, depth: float, tallest: floa
 def cartons(rng: np.random.Generator) -> Prop:
     """A pallet of cartons."""
     load = moved(_cartons(rng, 1.16, 0.76, 1.5), (0.0, 0.0, PALLET[2]))
-    return standing("cartons", [Part(_pallet(), "timber"), Part(load, "cardboard")])
+    return fitted("cartons", [Part(_pallet(), "timber"), Part(load, "cardboard")])
 
 
 def _crate(size: tuple[float, float, float]) -> list[Corners]:
@@ -123,7 +123,7 @@ def crates(rng: np.random.Generator) -> Prop:
             width * float(rng.uniform(0.75, 1.0)),
             depth * float(rng.uniform(0.75, 1.0)),
         )
-    return standing("crates", parts)
+    return fitted("crates", parts)
 
 
 def barrels(rng: np.random.Generator) -> Prop:
@@ -151,7 +151,7 @@ def barrels(rng: np.random.Generator) -> Prop:
         Part(moved(drum, (a, b, 0.0)), ("drum", "drum-other")[int(rng.random() < 0.25)]) for a, b in spots
     ]
     bungs = [moved(lathe([(0.03, 0.0), (0.03, 0.012)], 10), (a + 0.16, b - 0.1, h - 0.016)) for a, b in spots]
-    return standing("barrels", [*parts, Part(joined(bungs), "metal")])
+    return fitted("barrels", [*parts, Part(joined(bungs), "metal")])
 
 
 def pallet_rack(rng: np.random.Generator) -> Prop:
@@ -201,7 +201,7 @@ def pallet_rack(rng: np.random.Generator) -> Prop:
     parts += [box_part("upright", *posts), Part(joined(braces), "upright"), box_part("beam", *beams)]
     if wood:
         parts += [Part(joined(wood), "timber"), Part(joined(loads), "cardboard")]
-    return standing("pallet-rack", parts)
+    return fitted("pallet-rack", parts)
 
 
 def column(height: float) -> Prop:
@@ -221,7 +221,7 @@ def column(height: float) -> Prop:
                 "yellow" if k % 2 == 0 else "black", (-h - 0.02, -h - 0.02, z, h + 0.02, h + 0.02, z + 0.14)
             )
         )
-    return standing("column", parts)
+    return fitted("column", parts)
 
 
 def cone(rng: np.random.Generator) -> Prop:
@@ -233,7 +233,7 @@ def cone(rng: np.random.Generator) -> Prop:
     parts = [Part(bevelled_box((2.6 * r, 2.6 * r, 0.025), 0.005), "orange")]
     for k, finish in enumerate(("orange", "white", "orange")):
         parts.append(Part(lathe([(radius[k], z[k]), (radius[k + 1], z[k + 1])], 20), finish))
-    return standing("cone", parts)
+    return fitted("cone", parts)
 
 
 def trolley(rng: np.random.Generator) -> Prop:
@@ -254,4 +254,4 @@ def trolley(rng: np.random.Generator) -> Prop:
     bar.append(rod((-x - 0.06, -y + 0.05, 0.95), (-x - 0.06, y - 0.05, 0.95), 0.016))
     parts += [Part(joined(wheels), "black"), Part(joined(bar), "beam")]
     parts.append(Part(moved(_cartons(rng, 0.9, 0.56, 0.7), (0.06, 0.0, 0.22)), "cardboard"))
-    return standing("trolley", parts)
+    return fitted("trolley", parts)

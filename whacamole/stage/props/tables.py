@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from whacamole.stage.props.pieces import box_part, in_cells, legs, standing
-from whacamole.stage.props.prop import Part, Prop, drawn
+from whacamole.stage.props.pieces import box_part, in_cells, legs
+from whacamole.stage.props.prop import Part, Prop, drawn, fitted
 from whacamole.stage.shapes import Solid, bevelled_box, boxes, lathe, moved, turned
 from whacamole.stage.textures.interiors import CELLS
 
@@ -75,7 +75,7 @@ def dining_table(rng: np.random.Generator) -> Prop:
     parts = [Part(moved(bevelled_box((width, depth, 0.032), 0.006), (0.0, 0.0, TABLE - 0.032)), "wood")]
     parts += [Part(solid, "wood") for solid in legs(width - 0.08, depth - 0.08, TABLE - 0.03, leg, 0.02)]
     parts.append(_apron(width - 0.2, depth - 0.2, TABLE - 0.11, TABLE - 0.032))
-    return standing("table", parts + some_things(rng, 0.7 * width, depth, TABLE, int(rng.integers(1, 4))))
+    return fitted("table", parts + some_things(rng, 0.7 * width, depth, TABLE, int(rng.integers(1, 4))))
 
 
 def coffee_table(rng: np.random.Generator) -> Prop:
@@ -85,7 +85,7 @@ def coffee_table(rng: np.random.Generator) -> Prop:
     parts += [Part(solid, "wood") for solid in legs(width - 0.04, depth - 0.04, height - 0.02, 0.02, 0.015)]
     x, y = width / 2 - 0.06, depth / 2 - 0.06
     parts.append(box_part("wood", (-x, -y, 0.13, x, y, 0.15)))
-    return standing("table", parts + some_things(rng, width, depth, height, int(rng.integers(1, 4))))
+    return fitted("table", parts + some_things(rng, width, depth, height, int(rng.integers(1, 4))))
 
 
 def desk(rng: np.random.Generator) -> Prop:
@@ -113,4 +113,4 @@ def desk(rng: np.random.Generator) -> Prop:
             (-0.22, -0.2, top, 0.22, -0.06, top + 0.02),
         )
     )
-    return standing("desk", parts)
+    return fitted("desk", parts)
