@@ -1,5 +1,6 @@
 """Pictures of what windows show and of what hangs over shops; each picture is a sheet of several."""
 
+from collections.abc import Callable
 from itertools import pairwise
 
 import numpy as np
@@ -34,8 +35,14 @@ BOARDS = (
 
 def window_panes(rng: np.random.Generator, size: int = 512) -> Image:
     """Sixteen windows seen from outside by day: dark rooms, curtains, nets, blinds, the sky in the glass."""
-    edge = size // PANES
-    rows = [np.concatenate([_pane(rng, edge) for _ in range(PANES)], axis=1) for _ in range(PANES)]
+    return _sheet(_pane, rng, size, PANES)
+
+
+def _sheet(
+    picture: Callable[[np.random.Generator, int], Image], rng: np.random.Generator, size: int, count: int
+) -> Image:
+    """Lay ``count`` × ``count`` pictures side by side."""
+    rows = [np.concatenate([picture(rng, size // count) for _ in range(count)], axis=1) for _ in range(count)]
     return clipped(np.concatenate(rows, axis=0))
 
 
@@ -67,9 +74,7 @@ def _pane(rng: np.random.Generator, edge: int) -> Image:
 
 def shop_windows(rng: np.random.Generator, size: int = 512) -> Image:
     """Four shops seen through their windows: shelves of goods, lights, a table with what is on offer."""
-    edge = size // SHOPS
-    rows = [np.concatenate([_shop(rng, edge) for _ in range(SHOPS)], axis=1) for _ in range(SHOPS)]
-    return clipped(np.concatenate(rows, axis=0))
+    return _sheet(_shop, rng, size, SHOPS)
 
 
 def _shop(rng: np.random.Generator, edge: int) -> Image:
